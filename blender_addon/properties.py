@@ -1,0 +1,144 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Settings kept in the file: Object.ltmd, Material.ltmd, Scene.ltmd."""
+
+import bpy
+from bpy.props import EnumProperty, FloatProperty, IntProperty, PointerProperty, StringProperty
+
+OVERRIDABLE = {"LIBRARY_OVERRIDABLE"}
+
+SOURCES = (
+    ("NONE", "None", "LTMD is not set up on this object"),
+    ("LIVE", "Live", "Measured while rendering, from the rest state and the deformed surface"),
+    ("TEXTURE", "Texture", "Read from the baked images, one per frame"),
+)
+
+REST_MODES = (
+    ("BASIS", "Basis", "The mesh without shape keys, armatures and other deformers"),
+    ("FRAME", "Frame", "The object as it is at one frame"),
+    ("OBJECT", "Object", "The surface of another object with the same topology"),
+)
+
+
+def _is_mesh(_self, obj):
+    return obj.type == "MESH"
+
+
+class LtmdObjectSettings(bpy.types.PropertyGroup):
+    source: EnumProperty(
+        name="Source",
+        description="Where the highlights get the deformation from",
+        items=SOURCES,
+        default="NONE",
+        override=OVERRIDABLE,
+    )
+    rest_mode: EnumProperty(
+        name="Rest State",
+        description="The shape in which the material looks as designed; stretch is counted from it",
+        items=REST_MODES,
+        default="BASIS",
+        override=OVERRIDABLE,
+    )
+    rest_frame: IntProperty(
+        name="Rest Frame",
+        description="The frame whose shape is the rest state",
+        default=1,
+        override=OVERRIDABLE,
+    )
+    rest_object: PointerProperty(
+        name="Rest Object",
+        description="The mesh object whose surface is the rest state; same topology as this one",
+        type=bpy.types.Object,
+        poll=_is_mesh,
+        override=OVERRIDABLE,
+    )
+    uv_map: StringProperty(
+        name="UV Map",
+        description="The UV map to bake into; empty: the map active for render",
+        default="",
+        override=OVERRIDABLE,
+    )
+    size: IntProperty(
+        name="Size",
+        description="Width and height of the baked images in pixels",
+        default=1024,
+        min=16,
+        max=16384,
+        subtype="PIXEL",
+        override=OVERRIDABLE,
+    )
+    margin: IntProperty(
+        name="Margin",
+        description="How far values continue beyond the edge of a UV island, in pixels",
+        default=16,
+        min=0,
+        max=256,
+        subtype="PIXEL",
+        override=OVERRIDABLE,
+    )
+    frame_start: IntProperty(
+        name="First Frame",
+        description="First frame to bake",
+        default=1,
+        min=0,
+        override=OVERRIDABLE,
+    )
+    frame_end: IntProperty(
+        name="Last Frame",
+        description="Last frame to bake",
+        default=250,
+        min=0,
+        override=OVERRIDABLE,
+    )
+    # No DIR_PATH options beyond the subtype: BLEND_RELATIVE_... is not in 4.5, "//" works as text.
+    directory: StringProperty(
+        name="Output Folder",
+        description="Folder for the baked images; // is the folder of the saved file",
+        default="//ltmd/",
+        subtype="DIR_PATH",
+        override=OVERRIDABLE,
+    )
+
+
+class LtmdMaterialSettings(bpy.types.PropertyGroup):
+    # Written by set-up and read by remove; not shown.
+    set_up: IntProperty(
+        name="Set-Up Version",
+        description="Version of the LTMD set-up in this material; 0: none",
+        default=0,
+        options={"HIDDEN"},
+    )
+    record: StringProperty(
+        name="Set-Up Record",
+        description="What the set-up added and changed, so that removing it can restore the rest",
+        default="",
+        options={"HIDDEN"},
+    )
+    strength: FloatProperty(
+        name="Strength",
+        description="How much of the deformation the highlights follow; 0 ignores it, 1 is exact",
+        default=1.0,
+        min=0.0,
+        soft_max=2.0,
+        max=4.0,
+    )
+
+
+CLASSES = (LtmdObjectSettings, LtmdMaterialSettings)
+
+
+def register():
+    for cls in CLASSES:
+        bpy.utils.register_class(cls)
+    bpy.types.Object.ltmd = PointerProperty(
+        name="LTMD", type=LtmdObjectSettings, override=OVERRIDABLE
+    )
+    bpy.types.Material.ltmd = PointerProperty(
+        name="LTMD", type=LtmdMaterialSettings, override=OVERRIDABLE
+    )
+
+
+def unregister():
+    del bpy.types.Material.ltmd
+    del bpy.types.Object.ltmd
+    for cls in reversed(CLASSES):
+        bpy.utils.unregister_class(cls)
