@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "ltmd/export.h"
+
+/// 32-bit float OpenEXR files with metadata.
+///
+/// Keys of this project start with `ltmd:`; `ltmd:convention` is the version of what the numbers mean.
+namespace ltmd::inline v0 {
+
+/// The highest `ltmd:convention` that this library reads, and the one it writes.
+inline constexpr int convention = 1;
+
+enum class Compression { none, zips, zip };
+
+using Metadata = std::map<std::string, std::string>;
+
+struct ExrImage {
+    int width = 0, height = 0;
+    std::vector<std::string> channels;  ///< R, G, B, A first where present, then the file's order.
+    std::vector<float> pixels;          ///< [height * width * channels], row 0 = top.
+};
+
+/// Writes `pixels` ([height * width * channels.size()], row 0 = top) as 32-bit float. The file appears at `path` only when it is
+/// complete: it is written beside it under a temporary name and renamed. Throws FileError (the old file, if any, is unharmed and the temporary
+/// one removed) and InvalidInput (sizes, no or repeated channel names, empty metadata keys).
+LTMD_API void write_exr(const std::string& path, std::span<const float> pixels, int width, int height,
+                        std::span<const std::string> channels, Compression compression = Compression::zip,
+                        const Metadata& metadata = {});
+
+/// Reads all channels as 32-bit float. Throws FileError for an unreadable file or an `ltmd:convention` above ours.
+LTMD_API ExrImage read_exr(const std::string& path);
+
+/// The string attributes of a file's header; numbers as text. Throws as read_exr.
+LTMD_API Metadata exr_metadata(const std::string& path);
+
+/// Width and height from the header alone. Throws as read_exr.
+LTMD_API std::array<int, 2> exr_size(const std::string& path);
+
+}  // namespace ltmd::inline v0
