@@ -23,7 +23,8 @@ int core_count() { return std::max(1, static_cast<int>(std::thread::hardware_con
 
 std::atomic<int> requested_count{0};
 
-// Never destroyed: at the end of a process that unloads modules in its own order, joining threads can hang.
+// Never destroyed: at the end of a process that unloads modules in its own order, joining threads
+// can hang.
 IlmThread::ThreadPool& pool() {
     static auto* instance = new IlmThread::ThreadPool(0);
     return *instance;
@@ -62,8 +63,8 @@ private:
 
 void set_thread_count(int count) {
     if (count < 0 || count > max_thread_count)
-        throw InvalidInput("thread count " + std::to_string(count) + " is outside 0 (one per core) to " +
-                           std::to_string(max_thread_count));
+        throw InvalidInput("thread count " + std::to_string(count) +
+                           " is outside 0 (one per core) to " + std::to_string(max_thread_count));
     requested_count = count;
 }
 
@@ -72,7 +73,8 @@ int thread_count() {
     return count > 0 ? count : core_count();
 }
 
-void parallel_for(std::size_t count, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body) {
+void parallel_for(std::size_t count, std::size_t grain,
+                  const std::function<void(std::size_t, std::size_t)>& body) {
     if (count == 0) return;
     Work work{count, grain, (count + grain - 1) / grain, body, {}, {}, {}};
     const int helpers = static_cast<int>(std::min<std::size_t>(thread_count(), work.pieces)) - 1;

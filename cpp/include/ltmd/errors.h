@@ -8,7 +8,8 @@
 
 namespace ltmd::inline v0 {
 
-/// A shape, index or value that a function does not take; the message says what was given and what is allowed.
+/// A shape, index or value that a function does not take; the message says what was given and what
+/// is allowed.
 class LTMD_API InvalidInput : public std::invalid_argument {
 public:
     using std::invalid_argument::invalid_argument;

@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: Apache-2.0
+// This work is based on: microsurface-transformations, section 5.1.
+#include "ltmd/rest_state.h"
+
+#include <algorithm>
+#include <bit>
+#include <limits>
+#include <numeric>
+#include <string>
+#include <tuple>
+
+#include "ltmd/errors.h"
+#include "ltmd/tangent_frame.h"
+#include "parallel.h"
+#include "rest_state_data.h"
+#include "vector_math.h"
+
+namespace ltmd::inline v0 {
+namespace {
+
+constexpr std::size_t grain = 1 << 13;
+
+/// One triangle at one vertex, with what decides its fan.
+struct Incidence {
+    std::int32_t other;  ///< The vertex at the far end of an edge.
+    std::uint32_t u, v;  ///< Bits of the UV at this vertex.
+    int sign;            ///< Of the UV area.
+    std::int32_t entry;  ///< Position in the vertex's list of triangles.
+
+    auto key() const { return std::tuple(other, u, v, sign); }
+};
+
+void prepare_triangles(const MeshView& mesh, std::span<const Vec3f> positions,
+                       RestState::Data& data) {
+    const std::size_t count = mesh.triangles.size();
+    data.vertices.resize(count);
+    data.inverse_rest.resize(count);
+    data.area.resize(count);
+    data.state.resize(count);
+    parallel_for(count, grain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const Triangle& corners = mesh.triangles[i];
+            auto& vertex = data.vertices[i];
+            for (int k = 0; k < 3; ++k) vertex[k] = mesh.corner_vert[corners[k]];
+            const V3d p0 = to_double(positions[vertex[0]]);
+            const V3d e1 = to_double(positions[vertex[1]]) - p0,
+                      e2 = to_double(positions[vertex[2]]) - p0;
+            const V3d cross = e1.cross(e2);
+            data.area[i] = static_cast<float>(0.5 * cross.length());
+            if (has_no_area(e1, e2, cross)) {
+                data.state[i] = TriangleState::no_area;
+                continue;
+            }
+            const V3d z = cross.normalized();
+            V3d x = e1.normalized();
+            data.state[i] = TriangleState::no_uv;
+            if (mesh.has_uv()) {
+                TangentFrame frame;
+                if (tangent_frame(positions[vertex[0]], positions[vertex[1]], positions[vertex[2]],
+                                  mesh.corner_uv[corners[0]], mesh.corner_uv[corners[1]],
+                                  mesh.corner_uv[corners[2]], frame)) {
+                    x = V3d(frame.x[0], frame.x[1], frame.x[2]);
+                    data.state[i] = TriangleState::regular;
+                }
+            }
+            const V3d y = z.cross(x);
+            const double r11 = e1.dot(x), r12 = e2.dot(x), r21 = e1.dot(y), r22 = e2.dot(y);
+            const double det = r11 * r22 - r12 * r21;
+            data.inverse_rest[i] = {r22 / det, -r12 / det, -r21 / det, r11 / det};
+        }
+    });
+}
+
+TriangleLists triangles_of_vertices(const RestState::Data& data) {
+    TriangleLists lists;
+    lists.offsets.assign(data.vertex_count + 1, 0);
+    for (const auto& vertex : data.vertices)
+        for (std::int32_t v : vertex) ++lists.offsets[v + 1];
+    std::inclusive_scan(lists.offsets.begin(), lists.offsets.end(), lists.offsets.begin());
+    lists.triangles.resize(lists.offsets.back());
+    std::vector<std::int32_t> next(lists.offsets.begin(), lists.offsets.end() - 1);
+    for (std::size_t i = 0; i < data.vertices.size(); ++i)
+        for (std::int32_t v : data.vertices[i])
+            lists.triangles[next[v]++] = static_cast<std::int32_t>(i);
+    return lists;
+}
+
+/// Finds the fans: at each vertex, triangles that share an edge, the vertex's UV and the sign of
+/// the UV area are joined.
+void prepare_fans(const MeshView& mesh, RestState::Data& data) {
+    const TriangleLists& incident = data.vertex_triangles;
+    const auto corner_at = [&](std::int32_t triangle, std::int32_t vertex) {
+        int k = 0;
+        while (data.vertices[triangle][k] != vertex) ++k;
+        return mesh.triangles[triangle][k];
+    };
+
+    // Number the fans of each vertex 0, 1, ... in the order of their lowest triangle.
+    std::vector<std::int32_t> local_fan(incident.triangles.size());
+    std::vector<std::int32_t> first_fan(data.vertex_count + 1, 0);
+    std::vector<signed char> signs(mesh.triangles.size());
+    parallel_for(mesh.triangles.size(), grain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const Triangle& t = mesh.triangles[i];
+            signs[i] = static_cast<signed char>(
+                uv_area_sign(mesh.corner_uv[t[0]], mesh.corner_uv[t[1]], mesh.corner_uv[t[2]]));
+        }
+    });
+    parallel_for(data.vertex_count, grain, [&](std::size_t begin, std::size_t end) {
+        std::vector<Incidence> edges;
+        std::vector<std::int32_t> root;
+        const auto find = [&](std::int32_t i) {
+            while (root[i] != i) i = root[i] = root[root[i]];
+            return i;
+        };
+        for (std::size_t vertex = begin; vertex < end; ++vertex) {
+            const auto triangles = incident[vertex];
+            edges.clear();
+            root.resize(triangles.size());
+            std::iota(root.begin(), root.end(), 0);
+            for (std::size_t entry = 0; entry < triangles.size(); ++entry) {
+                const std::int32_t triangle = triangles[entry];
+                const Vec2f& uv =
+                    mesh.corner_uv[corner_at(triangle, static_cast<std::int32_t>(vertex))];
+                for (std::int32_t other : data.vertices[triangle])
+                    if (other != static_cast<std::int32_t>(vertex))
+                        edges.push_back({other, std::bit_cast<std::uint32_t>(uv[0]),
+                                         std::bit_cast<std::uint32_t>(uv[1]), signs[triangle],
+                                         static_cast<std::int32_t>(entry)});
+            }
+            std::sort(edges.begin(), edges.end(), [](const Incidence& a, const Incidence& b) {
+                return std::tuple(a.key(), a.entry) < std::tuple(b.key(), b.entry);
+            });
+            for (std::size_t i = 1; i < edges.size(); ++i) {
+                if (edges[i].key() != edges[i - 1].key()) continue;
+                const std::int32_t a = find(edges[i - 1].entry), b = find(edges[i].entry);
+                root[std::max(a, b)] = std::min(a, b);
+            }
+            std::int32_t fans = 0;
+            std::int32_t* local = &local_fan[incident.offsets[vertex]];
+            for (std::size_t entry = 0; entry < triangles.size(); ++entry) {
+                const std::int32_t lowest = find(static_cast<std::int32_t>(entry));
+                local[entry] = lowest == static_cast<std::int32_t>(entry) ? fans++ : local[lowest];
+            }
+            first_fan[vertex + 1] = fans;
+        }
+    });
+    data.report.seam_vertices = std::count_if(first_fan.begin(), first_fan.end(),
+                                              [](std::int32_t fans) { return fans > 1; });
+    std::inclusive_scan(first_fan.begin(), first_fan.end(), first_fan.begin());
+
+    // List the triangles of each fan, and the fan of each corner.
+    data.fans.offsets.assign(first_fan.back() + 1, 0);
+    data.fans.triangles.resize(incident.triangles.size());
+    data.corner_fan.assign(data.corner_count, -1);
+    std::vector<std::int32_t> counts;
+    for (std::size_t vertex = 0; vertex < data.vertex_count; ++vertex) {
+        const auto triangles = incident[vertex];
+        const std::int32_t* local = &local_fan[incident.offsets[vertex]];
+        counts.assign(first_fan[vertex + 1] - first_fan[vertex] + 1, 0);
+        for (std::size_t entry = 0; entry < triangles.size(); ++entry) ++counts[local[entry] + 1];
+        std::inclusive_scan(counts.begin(), counts.end(), counts.begin());
+        for (std::int32_t fan = first_fan[vertex]; fan < first_fan[vertex + 1]; ++fan)
+            data.fans.offsets[fan + 1] =
+                incident.offsets[vertex] + counts[fan - first_fan[vertex] + 1];
+        for (std::size_t entry = 0; entry < triangles.size(); ++entry) {
+            const std::int32_t triangle = triangles[entry];
+            data.fans.triangles[incident.offsets[vertex] + counts[local[entry]]++] = triangle;
+            // A face whose triangles fall into several fans takes the first that has UV area.
+            const std::int32_t corner = corner_at(triangle, static_cast<std::int32_t>(vertex));
+            std::int32_t& fan = data.corner_fan[corner];
+            const bool better = fan >= 0 &&
+                                signs[data.fans.triangles[data.fans.offsets[fan]]] == 0 &&
+                                signs[triangle] != 0;
+            if (fan < 0 || better) fan = first_fan[vertex] + local[entry];
+        }
+    }
+}
+
+}  // namespace
+
+RestState::RestState(const MeshView& mesh, std::span<const Vec3f> positions)
+    : data_(std::make_unique<Data>()) {
+    validate(mesh);
+    validate_positions(mesh, positions, "rest");
+    if (mesh.triangles.size() > std::numeric_limits<std::int32_t>::max() / 3)
+        throw InvalidInput(
+            "the mesh has " + std::to_string(mesh.triangles.size()) + " triangles; at most " +
+            std::to_string(std::numeric_limits<std::int32_t>::max() / 3) + " are allowed");
+    Data& data = *data_;
+    data.corner_count = mesh.corner_vert.size();
+    data.vertex_count = mesh.vertex_count;
+    data.has_uv = mesh.has_uv();
+    prepare_triangles(mesh, positions, data);
+    data.vertex_triangles = triangles_of_vertices(data);
+    for (TriangleState state : data.state) {
+        data.report.degenerate_triangles += state == TriangleState::no_area;
+        data.report.no_uv_triangles += data.has_uv && state == TriangleState::no_uv;
+    }
+    if (!data.has_uv) return;
+    for (const Triangle& t : mesh.triangles)
+        data.report.mirrored_triangles +=
+            uv_area_sign(mesh.corner_uv[t[0]], mesh.corner_uv[t[1]], mesh.corner_uv[t[2]]) < 0;
+    prepare_fans(mesh, data);
+}
+
+RestState::~RestState() = default;
+RestState::RestState(RestState&&) noexcept = default;
+RestState& RestState::operator=(RestState&&) noexcept = default;
+
+const RestReport& RestState::report() const { return data_->report; }
+std::size_t RestState::triangle_count() const { return data_->vertices.size(); }
+std::size_t RestState::corner_count() const { return data_->corner_count; }
+std::size_t RestState::vertex_count() const { return data_->vertex_count; }
+bool RestState::has_uv() const { return data_->has_uv; }
+
+}  // namespace ltmd::inline v0

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "ltmd/rest_state.h"
+
+namespace ltmd::inline v0 {
+
+enum class TriangleState : std::uint8_t {
+    regular,
+    no_uv,    ///< R^-1 is in some frame of the triangle: good for tensors alone.
+    no_area,  ///< R^-1 is not set.
+};
+
+/// Lists of triangles, one list per item: item i has triangles[offsets[i] .. offsets[i + 1]).
+struct TriangleLists {
+    std::vector<std::int32_t> offsets;
+    std::vector<std::int32_t> triangles;
+
+    std::size_t size() const { return offsets.size() - 1; }
+    std::span<const std::int32_t> operator[](std::size_t i) const {
+        return std::span(triangles).subspan(offsets[i], offsets[i + 1] - offsets[i]);
+    }
+};
+
+struct RestState::Data {
+    RestReport report;
+    std::size_t corner_count = 0;
+    std::size_t vertex_count = 0;
+    bool has_uv = false;
+
+    // Per triangle.
+    std::vector<std::array<std::int32_t, 3>> vertices;
+    std::vector<std::array<double, 4>> inverse_rest;  ///< R^-1, row-major.
+    std::vector<float> area;
+    std::vector<TriangleState> state;
+
+    TriangleLists vertex_triangles;        ///< All triangles of each vertex.
+    TriangleLists fans;                    ///< The triangles of each UV fan.
+    std::vector<std::int32_t> corner_fan;  ///< [C], -1 for a corner of no triangle.
+};
+
+}  // namespace ltmd::inline v0
