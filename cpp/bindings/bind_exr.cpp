@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "ltmd/exr.h"
+
+#include <pybind11/stl.h>
+
+#include "bindings.h"
+
+namespace ltmd::python {
+
+Compression parse_compression(const std::string& name) {
+    if (name == "none") return Compression::none;
+    if (name == "zips") return Compression::zips;
+    if (name == "zip") return Compression::zip;
+    throw py::value_error("compression is '" + name + "'; it must be 'none', 'zips' or 'zip'");
+}
+
+std::string parse_path(py::handle path) {
+    return py::str(py::module_::import("os").attr("fsdecode")(path));
+}
+
+Metadata parse_metadata(const py::dict& metadata) {
+    Metadata result;
+    for (const auto& [key, value] : metadata) result[key.cast<std::string>()] = py::str(value);
+    return result;
+}
+
+void bind_exr(py::module_& module) {
+    using namespace py::literals;
+    module.attr("convention") = convention;
+    module.def(
+        "write_exr",
+        [](py::handle path, py::handle pixels,
+           const std::optional<std::vector<std::string>>& channels, const std::string& compression,
+           const py::dict& metadata) {
+            auto image = require<float>(pixels, "pixels", {-1, -1, -1});
+            std::vector<std::string> names;
+            if (channels) {
+                names = *channels;
+            } else if (image.shape(2) == 1) {
+                names = {"Y"};
+            } else if (image.shape(2) == 3 || image.shape(2) == 4) {
+                names = {"R", "G", "B", "A"};
+            } else {
+                throw py::value_error("pixels have " + std::to_string(image.shape(2)) +
+                                      " channels: name them with channels=[...]");
+            }
+            if (!channels && image.shape(2) == 3) {
+                Array<float> with_alpha({image.shape(0), image.shape(1), py::ssize_t{4}});
+                const float* from = image.data();
+                float* to = with_alpha.mutable_data();
+                for (py::ssize_t i = 0; i < image.shape(0) * image.shape(1);
+                     ++i, from += 3, to += 4) {
+                    std::copy_n(from, 3, to);
+                    to[3] = 1;
+                }
+                image = with_alpha;
+            }
+            const std::string file = parse_path(path);
+            const Compression codec = parse_compression(compression);
+            const Metadata attributes = parse_metadata(metadata);
+            const int height = static_cast<int>(image.shape(0)),
+                      width = static_cast<int>(image.shape(1));
+            const auto values = items<float>(image);
+            py::gil_scoped_release release;
+            write_exr(file, values, width, height, names, codec, attributes);
+        },
+        "path"_a, "pixels"_a, py::kw_only(), "channels"_a = py::none(), "compression"_a = "zip",
+        "metadata"_a = py::dict(),
+        R"(Write float32[height, width, channels], row 0 = top, as a 32-bit float OpenEXR file.
+
+channels: names, one per channel. By default 1 channel is Y, 4 are R, G, B, A, and 3 are R, G, B with A = 1 added, because
+Blender needs a finite alpha. compression: 'none', 'zips' or 'zip'. metadata: dict of header attributes, written as text.
+The file appears only when complete (temporary file, then rename). Raises OSError with the path, ValueError, TypeError.)");
+    module.def(
+        "read_exr",
+        [](py::handle path) {
+            const std::string file = parse_path(path);
+            auto image = [&] {
+                py::gil_scoped_release release;
+                return std::make_unique<ExrImage>(read_exr(file));
+            }();
+            const std::vector<py::ssize_t> shape = {
+                image->height, image->width, static_cast<py::ssize_t>(image->channels.size())};
+            float* data = image->pixels.data();
+            py::capsule owner(image.release(),
+                              [](void* pointer) { delete static_cast<ExrImage*>(pointer); });
+            return py::array_t<float>(shape, data, owner);
+        },
+        "path"_a,
+        R"(The pixels of an OpenEXR file, float32[height, width, channels], row 0 = top; R, G, B, A first where present.
+
+Raises OSError for an unreadable file, or one of a newer `ltmd:convention` than this library reads.)");
+    module.def(
+        "exr_metadata",
+        [](py::handle path) {
+            const std::string file = parse_path(path);
+            py::gil_scoped_release release;
+            return exr_metadata(file);
+        },
+        "path"_a,
+        "The text and number attributes of an OpenEXR file's header, as a dict of str. Raises as "
+        "read_exr.");
+}
+
+}  // namespace ltmd::python

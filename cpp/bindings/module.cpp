@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <pybind11/pybind11.h>
+
+#include "bindings.h"
+#include "ltmd/errors.h"
+#include "ltmd/version.h"
+
+#define LTMD_TEXT_(x) #x
+#define LTMD_TEXT(x) LTMD_TEXT_(x)
+
+PYBIND11_MODULE(_ltmd, module) {
+    using namespace ltmd::python;
+    module.doc() = "The compiled part of the package ltmd.";
+    module.attr("__version__") = LTMD_TEXT(LTMD_VERSION_MAJOR) "." LTMD_TEXT(
+        LTMD_VERSION_MINOR) "." LTMD_TEXT(LTMD_VERSION_PATCH);
+    py::register_exception<ltmd::InvalidInput>(module, "InvalidInput", PyExc_ValueError);
+    py::register_exception<ltmd::FileError>(module, "FileError", PyExc_OSError);
+    py::register_exception<ltmd::Cancelled>(module, "Cancelled", PyExc_RuntimeError);
+    bind_threads(module);
+    bind_mesh_view(module);
+    bind_rest_state(module);
+    bind_tension(module);
+    bind_deformation_tensor(module);
+    bind_texel_coverage(module);
+    bind_exr(module);
+    bind_sequence_baker(module);
+    bind_verify(module);
+}

@@ -1,0 +1,163 @@
+# SPDX-License-Identifier: Apache-2.0
+import os
+from collections.abc import Sequence
+from types import TracebackType
+from typing import Literal, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+__version__: str
+convention: int
+passes: list[str]
+
+Path = str | os.PathLike[str]
+Per = Literal["triangle", "vertex", "corner"]
+Compression = Literal["none", "zips", "zip"]
+
+class InvalidInput(ValueError): ...
+class FileError(OSError): ...
+class Cancelled(RuntimeError): ...
+
+class Mesh:
+    def __init__(
+        self,
+        triangles: NDArray[np.int32],
+        corner_vert: NDArray[np.int32],
+        corner_uv: NDArray[np.float32] | None,
+        vertex_count: int,
+    ) -> None: ...
+    @property
+    def triangles(self) -> NDArray[np.int32]: ...
+    @property
+    def corner_vert(self) -> NDArray[np.int32]: ...
+    @property
+    def corner_uv(self) -> NDArray[np.float32] | None: ...
+    @property
+    def vertex_count(self) -> int: ...
+    @property
+    def tiles(self) -> list[tuple[int, int]]: ...
+
+class RestReport:
+    @property
+    def degenerate_triangles(self) -> int: ...
+    @property
+    def no_uv_triangles(self) -> int: ...
+    @property
+    def mirrored_triangles(self) -> int: ...
+    @property
+    def seam_vertices(self) -> int: ...
+    @property
+    def overlap_fraction(self) -> float: ...
+
+class RestState:
+    def __init__(self, mesh: Mesh, positions: NDArray[np.float32]) -> None: ...
+    @property
+    def report(self) -> RestReport: ...
+
+class TexelCoverage:
+    def __init__(
+        self,
+        mesh: Mesh,
+        width: int,
+        height: int,
+        tile: tuple[int, int] = (0, 0),
+        margin: int = 16,
+    ) -> None: ...
+    def bake(
+        self,
+        corner_values: NDArray[np.float32],
+        background: Sequence[float] = (1.0, 0.0, 1.0),
+    ) -> NDArray[np.float32]: ...
+    @property
+    def width(self) -> int: ...
+    @property
+    def height(self) -> int: ...
+    @property
+    def covered(self) -> int: ...
+    @property
+    def overlapping(self) -> int: ...
+    @property
+    def triangle(self) -> NDArray[np.int32]: ...
+
+class SequenceBaker:
+    def __init__(
+        self,
+        mesh: Mesh,
+        rest: RestState | NDArray[np.float32],
+        width: int,
+        height: int,
+        passes: Sequence[str] = ["tension"],
+        *,
+        margin: int = 16,
+        tile: tuple[int, int] = (0, 0),
+        per: Per = "corner",
+        compression: Compression = "zip",
+        metadata: dict[str, object] = {},
+        in_flight: int = 2,
+    ) -> None: ...
+    def frame(
+        self,
+        deformed: NDArray[np.float32],
+        paths: dict[str, Path],
+        metadata: dict[str, object] = {},
+    ) -> None: ...
+    def cancel(self) -> None: ...
+    def finish(self) -> None: ...
+    @property
+    def progress(self) -> tuple[int, int]: ...
+    @property
+    def coverage_report(self) -> dict[str, int]: ...
+    def __enter__(self) -> Self: ...
+    def __exit__(
+        self,
+        type: type[BaseException] | None,
+        value: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None: ...
+
+class VerifyReport:
+    @property
+    def ok(self) -> bool: ...
+    @property
+    def problems(self) -> list[str]: ...
+    @property
+    def sequences(self) -> dict[str, list[int]]: ...
+
+def set_threads(count: int) -> None: ...
+def threads() -> int: ...
+def udim(tile: tuple[int, int]) -> int: ...
+def tension(
+    mesh: Mesh,
+    rest: RestState | NDArray[np.float32],
+    deformed: NDArray[np.float32],
+    per: Per = "corner",
+) -> NDArray[np.float32]: ...
+def tension_matrix(t: NDArray[np.float32]) -> NDArray[np.float32]: ...
+def stretch(t: NDArray[np.float32]) -> NDArray[np.float32]: ...
+def deformation_tensor(
+    mesh: Mesh, rest: RestState | NDArray[np.float32], deformed: NDArray[np.float32]
+) -> NDArray[np.float32]: ...
+def project_tensor(
+    tensor: NDArray[np.float32], x: NDArray[np.float32], y: NDArray[np.float32]
+) -> NDArray[np.float32]: ...
+def bake(
+    mesh: Mesh,
+    corner_values: NDArray[np.float32],
+    width: int,
+    height: int,
+    tile: tuple[int, int] = (0, 0),
+    margin: int = 16,
+    background: Sequence[float] = (1.0, 0.0, 1.0),
+) -> NDArray[np.float32]: ...
+def write_exr(
+    path: Path,
+    pixels: NDArray[np.float32],
+    *,
+    channels: Sequence[str] | None = None,
+    compression: Compression = "zip",
+    metadata: dict[str, object] = {},
+) -> None: ...
+def read_exr(path: Path) -> NDArray[np.float32]: ...
+def exr_metadata(path: Path) -> dict[str, str]: ...
+def verify(directory: Path, frames: Sequence[int] | None = None) -> VerifyReport: ...
