@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""LTMD Texture Tension: the deformation, from one baked image; chain one per UDIM tile."""
+
+from .. import osl_script
+from . import add_input, add_output, ends
+
+NAME = "LTMD Texture Tension"
+VERSION = 1
+
+
+def build(tree):
+    add_output(
+        tree,
+        "Tension",
+        "Vector",
+        "How the surface is deformed from its rest state, for LTMD Glossy. 1, 0, 1 is the rest state",
+    )
+    add_output(tree, "Tangent", "Vector", "Direction of the UV map's U on the surface")
+    add_input(
+        tree,
+        "Image",
+        "Color",
+        "Color of an Image Texture node with the baked image (data, extended)",
+        (1.0, 0.0, 1.0, 1.0),
+        hide_value=True,
+    )
+    add_input(
+        tree,
+        "UV",
+        "Vector",
+        "From a UV Map node with the UV map that was baked",
+        (0.0, 0.0, 0.0),
+        hide_value=True,
+    )
+    add_input(tree, "Tile", "Int", "UDIM number of the image; 1001 without UDIM", 1001, 1001, 2000)
+    add_input(
+        tree,
+        "Previous",
+        "Vector",
+        "Tension of the other tiles, from another LTMD Texture Tension node",
+        (1.0, 0.0, 1.0),
+    )
+    start, end = ends(tree, 400)
+    script = osl_script.fill(tree.nodes.new("ShaderNodeScript"), "ltmd_tension_texture")
+    for socket in start.outputs:
+        if socket.name:
+            tree.links.new(socket, script.inputs[socket.name])
+    tree.links.new(script.outputs["Tension"], end.inputs["Tension"])
+    tree.links.new(script.outputs["Tangent"], end.inputs["Tangent"])

@@ -1,0 +1,66 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Script nodes that carry their compiled shader: no path, no text data-block, no compiler at render.
+
+The shaders are in `osl/` beside this file in the released extension, beside the add-on's folder in a
+source tree.
+"""
+
+import importlib.util
+import re
+from pathlib import Path
+
+import bpy
+
+_INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]+"([^"]+)"[^\n]*\n?', re.MULTILINE)
+_ONCE = re.compile(r"^[ \t]*#[ \t]*pragma[ \t]+once[^\n]*\n?", re.MULTILINE)
+
+
+def folder():
+    """Where the .osl files are."""
+    here = Path(__file__).resolve().parent
+    shipped = here / "osl"
+    return shipped if shipped.is_dir() else here.parent / "osl"
+
+
+def inlined(path, include_folder=None, _seen=None):
+    """Text of a shader with our own includes put in, each once; the system's stay includes."""
+    path = Path(path)
+    include_folder = Path(include_folder) if include_folder else path.parent / "include"
+    seen = set() if _seen is None else _seen
+
+    def put_in(match):
+        included = include_folder / match.group(1)
+        if not included.is_file():
+            return match.group(0)
+        if included in seen:
+            return ""
+        seen.add(included)
+        return inlined(included, include_folder, seen)
+
+    return _INCLUDE.sub(put_in, _ONCE.sub("", path.read_text(encoding="utf-8")))
+
+
+def fill(node, name, scene=None):
+    """Compile shader `name` into a Script node. Raises RuntimeError if that fails."""
+    scene = scene or bpy.context.scene
+    if importlib.util.find_spec("oslquery") is None and hasattr(bpy.utils, "expose_bundled_modules"):
+        bpy.utils.expose_bundled_modules()  # bpy as a module: the sockets are read by oslquery
+    text = bpy.data.texts.new(f"{name}.osl")
+    engine = scene.render.engine
+    try:
+        text.write(inlined(folder() / f"{name}.osl"))
+        # The node is compiled by the scene's engine at the moment the script is assigned.
+        if engine != "CYCLES":
+            scene.render.engine = "CYCLES"
+        node.mode = "INTERNAL"
+        node.script = text
+    finally:
+        if scene.render.engine != engine:
+            scene.render.engine = engine
+        bpy.data.texts.remove(text)  # the bytecode stays in the node
+    if not node.outputs or not node.bytecode:
+        raise RuntimeError(
+            f"The shader {name} could not be compiled: this Blender may be built without Open "
+            "Shading Language (details are on the console)"
+        )
+    return node
