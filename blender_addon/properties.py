@@ -2,7 +2,7 @@
 """Settings kept in the file: Object.ltmd, Material.ltmd, Scene.ltmd."""
 
 import bpy
-from bpy.props import EnumProperty, FloatProperty, IntProperty, PointerProperty, StringProperty
+from bpy.props import BoolProperty, EnumProperty, IntProperty, PointerProperty, StringProperty
 
 OVERRIDABLE = {"LIBRARY_OVERRIDABLE"}
 
@@ -113,13 +113,11 @@ class LtmdMaterialSettings(bpy.types.PropertyGroup):
         default="",
         options={"HIDDEN"},
     )
-    strength: FloatProperty(
-        name="Strength",
-        description="How much of the deformation the highlights follow; 0 ignores it, 1 is exact",
-        default=1.0,
-        min=0.0,
-        soft_max=2.0,
-        max=4.0,
+    created: BoolProperty(
+        name="Made by Set-Up",
+        description="The material was made because the object had none",
+        default=False,
+        options={"HIDDEN"},
     )
 
 

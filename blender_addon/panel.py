@@ -1,0 +1,172 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The panel "LTMD": Properties editor (object and material) and the 3D view's sidebar."""
+
+import textwrap
+
+import bpy
+
+from . import library, setup, source, surface
+from .writable import REFUSAL, is_writable
+
+
+def sentence(layout, context, text, icon="NONE", alert=False):
+    """A sentence broken to the width of the region."""
+    column = layout.column(align=True)
+    column.alert = alert
+    column.scale_y = 0.8
+    width = context.region.width if context.region else 300
+    scale = context.preferences.system.ui_scale
+    lines = textwrap.wrap(text, max(20, int((width - 60 * scale) / (6.5 * scale))))
+    for index, line in enumerate(lines):
+        column.label(text=line, icon=icon if index == 0 else ("BLANK1" if icon != "NONE" else icon))
+
+
+def state(obj):
+    """In words: what the object's highlights do now."""
+    kind = obj.ltmd.source
+    if kind == "NONE" or not source.materials(obj):
+        return "Not set up: highlights ignore the deformation"
+    if kind == "LIVE":
+        return "Live: the deformation is measured while rendering"
+    return "Texture: the deformation is read from the baked images"
+
+
+def draw(layout, context):
+    obj = context.object
+    layout.use_property_split = True
+    layout.use_property_decorate = False
+    if obj is None or obj.type != "MESH":
+        sentence(layout, context, "LTMD works on mesh objects")
+        return
+
+    good, words = setup.osl_status(context)
+    sentence(layout, context, words, icon="NONE" if good else "ERROR")
+    sentence(layout, context, state(obj))
+    if obj.ltmd.source == "LIVE":
+        limits = source.live_limits(obj)
+        if limits:
+            sentence(layout, context, limits, icon="INFO")
+    if not is_writable(obj):
+        sentence(layout, context, REFUSAL, icon="ERROR")
+
+    row = layout.row(align=True)
+    row.operator("ltmd.setup", text="Set Up LTMD").object_name = ""
+    if obj.ltmd.source != "NONE":
+        row.operator("ltmd.remove", text="Remove").object_name = ""
+
+    for material in source.materials(obj):
+        lobe = surface.lobe(material)
+        if lobe is None:
+            continue
+        column = layout.column(align=True)
+        column.label(text=material.name, icon="MATERIAL")
+        for name in ("Roughness", "Stretch", "Rotation", "Strength", "Height Response"):
+            socket = lobe.inputs[name]
+            if not socket.is_linked:
+                column.prop(socket, "default_value", text=name)
+
+
+def draw_bake(layout, context):
+    obj = context.object
+    layout.use_property_split = True
+    layout.use_property_decorate = False
+    settings = obj.ltmd
+    column = layout.column()
+    column.enabled = is_writable(obj)
+    column.prop(settings, "rest_mode")
+    if settings.rest_mode == "FRAME":
+        column.prop(settings, "rest_frame")
+    elif settings.rest_mode == "OBJECT":
+        column.prop(settings, "rest_object")
+    column.prop_search(settings, "uv_map", obj.data, "uv_layers", icon="GROUP_UVS")
+    pair = column.column(align=True)
+    pair.prop(settings, "size")
+    pair.prop(settings, "margin")
+    pair = column.column(align=True)
+    pair.prop(settings, "frame_start", text="Frames, First")
+    pair.prop(settings, "frame_end", text="Last")
+    column.prop(settings, "directory")
+
+    problem = library.problem()
+    if problem:
+        sentence(layout, context, problem, icon="ERROR")
+    if settings.directory.startswith("//") and not bpy.data.filepath:
+        sentence(layout, context, "Save the file first", icon="INFO")
+    if not obj.data.uv_layers:
+        sentence(layout, context, "Baking needs a UV map; live tension does not", icon="INFO")
+    row = layout.row()
+    row.enabled = not problem
+    if hasattr(bpy.types, "LTMD_OT_bake"):
+        row.operator("ltmd.bake")
+
+
+class _Main:
+    bl_label = "LTMD"
+
+    def draw(self, context):
+        draw(self.layout, context)
+
+
+class _Bake:
+    bl_label = "Bake Tension"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context):
+        return context.object is not None and context.object.type == "MESH"
+
+    def draw(self, context):
+        draw_bake(self.layout, context)
+
+
+class LTMD_PT_object(_Main, bpy.types.Panel):
+    bl_space_type = "PROPERTIES"
+    bl_region_type = "WINDOW"
+    bl_context = "object"
+    bl_options = {"DEFAULT_CLOSED"}
+
+
+class LTMD_PT_object_bake(_Bake, bpy.types.Panel):
+    bl_space_type = "PROPERTIES"
+    bl_region_type = "WINDOW"
+    bl_context = "object"
+    bl_parent_id = "LTMD_PT_object"
+
+
+class LTMD_PT_material(_Main, bpy.types.Panel):
+    bl_space_type = "PROPERTIES"
+    bl_region_type = "WINDOW"
+    bl_context = "material"
+    bl_options = {"DEFAULT_CLOSED"}
+
+
+class LTMD_PT_view3d(_Main, bpy.types.Panel):
+    bl_space_type = "VIEW_3D"
+    bl_region_type = "UI"
+    bl_category = "LTMD"
+
+
+class LTMD_PT_view3d_bake(_Bake, bpy.types.Panel):
+    bl_space_type = "VIEW_3D"
+    bl_region_type = "UI"
+    bl_category = "LTMD"
+    bl_parent_id = "LTMD_PT_view3d"
+
+
+CLASSES = (
+    LTMD_PT_object,
+    LTMD_PT_object_bake,
+    LTMD_PT_material,
+    LTMD_PT_view3d,
+    LTMD_PT_view3d_bake,
+)
+
+
+def register():
+    for cls in CLASSES:
+        bpy.utils.register_class(cls)
+
+
+def unregister():
+    for cls in reversed(CLASSES):
+        bpy.utils.unregister_class(cls)

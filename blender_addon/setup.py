@@ -1,0 +1,223 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The operators Set Up LTMD and Remove LTMD Set-Up."""
+
+import bpy
+from bpy.props import BoolProperty, StringProperty
+
+from . import nodes, source, surface
+from .writable import REFUSAL, is_writable
+
+
+def osl_on(scene):
+    """Is the scene rendered by Cycles with Open Shading Language?"""
+    return scene.render.engine == "CYCLES" and scene.cycles.shading_system
+
+
+def osl_status(context):
+    """(will this scene's renders use OSL, a sentence that says so or what is in the way)."""
+    scene = context.scene
+    if not bpy.app.build_options.cycles_osl:
+        return False, "This Blender is built without Open Shading Language: LTMD cannot render"
+    if scene.render.engine != "CYCLES":
+        return False, "The render engine is not Cycles: a plain material is shown"
+    if not scene.cycles.shading_system:
+        return False, "Open Shading Language is off: LTMD materials render black in Cycles"
+    if scene.cycles.device == "GPU":
+        addon = context.preferences.addons.get("cycles")
+        kind = addon.preferences.compute_device_type if addon else "NONE"
+        if kind == "OPTIX":
+            return True, "Renders on the GPU (OptiX) with Open Shading Language"
+        if kind != "NONE":
+            return False, (
+                f"{kind} devices cannot use Open Shading Language, so LTMD materials render "
+                "black: choose OptiX or the CPU"
+            )
+    return True, "Renders on the CPU with Open Shading Language"
+
+
+def target_objects(context, name):
+    """The mesh objects an operator works on: the one named, or selected and active ones."""
+    if name:
+        obj = bpy.data.objects.get(name)
+        if obj is None:
+            raise source.SourceError(f"There is no object named {name}")
+        if obj.type != "MESH":
+            raise source.SourceError(f"{name} is not a mesh")
+        return [obj]
+    chosen = list(context.selected_objects)
+    if context.object and context.object not in chosen:
+        chosen.append(context.object)
+    meshes = [obj for obj in chosen if obj.type == "MESH"]
+    if not meshes:
+        raise source.SourceError("Select a mesh object first")
+    return meshes
+
+
+def set_up(obj):
+    """Set up one object; return sentences for the user. Raises SourceError."""
+    if not is_writable(obj):
+        raise source.SourceError(f"{obj.name}: {REFUSAL}")
+    told = source.store_rest(obj)
+    if not any(slot.material for slot in obj.material_slots):
+        _new_material(obj)
+    for material in list(dict.fromkeys(s.material for s in obj.material_slots if s.material)):
+        if not is_writable(material) or material.override_library:
+            # The node tree of linked data cannot be changed; a slot of the object can.
+            linked, material = material, source.own_copy(obj, material)
+            told.append(f"{obj.name} has its own copy of the linked material {linked.name} now")
+        if surface.is_set_up(material):
+            if obj.ltmd.source == "TEXTURE":
+                continue
+        else:
+            told += surface.add(material)
+        source.switch_to_live(obj, material)
+    if obj.ltmd.source == "NONE":
+        obj.ltmd.source = "LIVE"
+    return told
+
+
+def remove(obj):
+    """Undo set_up(); return sentences for the user."""
+    told = []
+    for material in source.materials(obj):
+        for other in source.users(material):
+            if other != obj:
+                told.append(f"{material.name} is shared: also removed from {other.name}")
+                _forget(other)
+        source.clear(material)
+        created = material.ltmd.created
+        surface.remove(material)
+        if created:
+            for slot in obj.material_slots:
+                if slot.material == material:
+                    slot.material = None
+            if material.users == 0:
+                bpy.data.materials.remove(material)
+    _forget(obj)
+    nodes.remove_unused()
+    return told
+
+
+def _forget(obj):
+    obj.ltmd.source = "NONE"
+    mesh = obj.data
+    shared = any(o.data == mesh and o.ltmd.source == "LIVE" for o in bpy.data.objects)
+    if is_writable(mesh) and not shared:
+        source.clear_rest(mesh)
+    if "ltmd_slot" in obj:
+        del obj["ltmd_slot"]
+        if is_writable(mesh) and len(mesh.materials) and mesh.materials[-1] is None:
+            mesh.materials.pop()
+
+
+def _new_material(obj):
+    material = bpy.data.materials.new(f"{obj.name} LTMD")
+    if not material.use_nodes:
+        material.use_nodes = True
+    material.ltmd.created = True
+    if obj.material_slots:
+        if not is_writable(obj.data):
+            obj.material_slots[0].link = "OBJECT"
+        obj.material_slots[0].material = material
+    elif is_writable(obj.data):
+        obj.data.materials.append(material)
+        obj["ltmd_slot"] = True
+    else:
+        raise source.SourceError(f"{obj.name} has no material slot: {REFUSAL}")
+
+
+class _OnObjects:
+    object_name: StringProperty(
+        name="Object",
+        description="Name of the mesh object; empty: the selected ones",
+        default="",
+        options={"SKIP_SAVE"},
+    )
+
+    @classmethod
+    def poll(cls, context):
+        return context.mode == "OBJECT"
+
+    def execute(self, context):
+        try:
+            objects = target_objects(context, self.object_name)
+        except source.SourceError as error:
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
+        done = 0
+        for obj in objects:
+            try:
+                for sentence in self.work(obj):
+                    self.report({"INFO"}, sentence)
+                done += 1
+            except (source.SourceError, RuntimeError) as error:
+                self.report({"WARNING" if len(objects) > 1 else "ERROR"}, str(error))
+        if not done:
+            return {"CANCELLED"}
+        self.after(context, done)
+        return {"FINISHED"}
+
+
+class LTMD_OT_setup(_OnObjects, bpy.types.Operator):
+    """Make the highlights of the selected objects follow their deformation"""
+
+    bl_idname = "ltmd.setup"
+    bl_label = "Set Up LTMD"
+    bl_options = {"REGISTER", "UNDO"}
+
+    use_osl: BoolProperty(
+        name="Cycles with Open Shading Language",
+        description="Switch this scene to Cycles with Open Shading Language, which LTMD needs",
+        default=True,
+    )
+
+    def invoke(self, context, event):
+        if self.use_osl and not osl_on(context.scene):
+            return context.window_manager.invoke_confirm(
+                self,
+                event,
+                title="Set Up LTMD",
+                message="This scene will render in Cycles with Open Shading Language",
+                confirm_text="Set Up",
+            )
+        return self.execute(context)
+
+    def work(self, obj):
+        return set_up(obj)
+
+    def after(self, context, done):
+        scene = context.scene
+        if self.use_osl and not osl_on(scene):
+            scene.render.engine = "CYCLES"
+            scene.cycles.shading_system = True
+        good, sentence = osl_status(context)
+        self.report({"INFO"} if good else {"WARNING"}, sentence)
+
+
+class LTMD_OT_remove(_OnObjects, bpy.types.Operator):
+    """Take LTMD off the selected objects and restore their materials"""
+
+    bl_idname = "ltmd.remove"
+    bl_label = "Remove LTMD Set-Up"
+    bl_options = {"REGISTER", "UNDO"}
+
+    def work(self, obj):
+        if not is_writable(obj):
+            raise source.SourceError(f"{obj.name}: {REFUSAL}")
+        return remove(obj)
+
+    def after(self, context, done):
+        pass
+
+
+CLASSES = (LTMD_OT_setup, LTMD_OT_remove)
+
+
+def register():
+    for cls in CLASSES:
+        bpy.utils.register_class(cls)
+
+
+def unregister():
+    for cls in reversed(CLASSES):
+        bpy.utils.unregister_class(cls)

@@ -1,0 +1,291 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Where a set-up material gets the tension from: live, or baked images."""
+
+import bpy
+import numpy as np
+
+from . import nodes, surface
+from .nodes import live_tension, texture_tension
+from .writable import is_writable
+
+REST_ATTRIBUTE = live_tension.REST_ATTRIBUTE
+
+# Modifiers that only move vertices, or copy triangles unchanged: a point attribute of the rest
+# positions stays right behind them. Anything else makes new shapes, where only the Generated
+# coordinates are subdivided like the surface itself.
+MOVING = {
+    "ARMATURE", "CAST", "CLOTH", "COLLISION", "CORRECTIVE_SMOOTH", "CURVE", "DATA_TRANSFER",
+    "DISPLACE", "DYNAMIC_PAINT", "HOOK", "LAPLACIANDEFORM", "LAPLACIANSMOOTH", "LATTICE",
+    "MESH_CACHE", "MESH_DEFORM", "MESH_SEQUENCE_CACHE", "NORMAL_EDIT", "PARTICLE_SYSTEM",
+    "SHRINKWRAP", "SIMPLE_DEFORM", "SMOOTH", "SOFT_BODY", "SURFACE", "SURFACE_DEFORM",
+    "UV_PROJECT", "UV_WARP", "VERTEX_WEIGHT_EDIT", "VERTEX_WEIGHT_MIX",
+    "VERTEX_WEIGHT_PROXIMITY", "VOLUME_DISPLACE", "WARP", "WAVE", "WEIGHTED_NORMAL",
+}  # fmt: skip
+COPYING = {"ARRAY", "EDGE_SPLIT", "MASK", "MIRROR", "NODES", "TRIANGULATE"}
+
+
+class SourceError(Exception):
+    """The source cannot be used; str() says why and what to do."""
+
+
+def needs_generated(obj):
+    """Does a modifier of the object subdivide or rebuild the surface in renders?"""
+    return any(
+        m.show_render
+        and m.type not in MOVING | COPYING
+        and not (m.type == "SUBSURF" and m.subdivision_type == "SIMPLE")
+        for m in obj.modifiers
+    )
+
+
+def live_limits(obj):
+    """What live tension cannot do on this object, as a sentence, or None."""
+    if not needs_generated(obj):
+        stale = REST_ATTRIBUTE not in obj.data.attributes
+        if stale and obj.ltmd.source == "LIVE":
+            return "Viewport: shown at rest, as the rest state is not stored in the mesh"
+        return None
+    if any(m.show_render and m.type == "NODES" for m in obj.modifiers):
+        return (
+            "Geometry Nodes and subdivision together hide the rest state from live tension: "
+            "bake the tension for this object"
+        )
+    if REST_ATTRIBUTE in obj.data.attributes:
+        return "The modifiers have changed: press Set Up LTMD again"
+    return "The deformation shows in final renders; the viewport shows this object at rest"
+
+
+def rest_positions(obj):
+    """The object's rest state as float32[vertices, 3] in its own space. Raises SourceError."""
+    settings = obj.ltmd
+    mesh = obj.data
+    if settings.rest_mode == "BASIS":
+        return _basis(mesh)
+    if settings.rest_mode == "OBJECT":
+        other = settings.rest_object
+        if other is None:
+            raise SourceError(f"{obj.name}: choose the rest object")
+        positions = _basis(other.data)
+        label = other.name
+    else:
+        positions = _positions_at(obj, settings.rest_frame)
+        label = f"frame {settings.rest_frame}"
+    if len(positions) != len(mesh.vertices):
+        raise SourceError(
+            f"{obj.name} has {len(mesh.vertices)} vertices but {label} has {len(positions)}: live "
+            "tension needs the same mesh in both; bake the tension instead"
+        )
+    return positions
+
+
+def _basis(mesh):
+    data = mesh.shape_keys.reference_key.points if mesh.shape_keys else mesh.vertices
+    positions = np.empty(len(data) * 3, np.float32)
+    data.foreach_get("co", positions)
+    return positions.reshape(-1, 3)
+
+
+def _positions_at(obj, frame):
+    scene = bpy.context.scene
+    now = scene.frame_current
+    try:
+        scene.frame_set(frame)
+        evaluated = obj.evaluated_get(bpy.context.evaluated_depsgraph_get()).data
+        positions = np.empty(len(evaluated.vertices) * 3, np.float32)
+        evaluated.vertices.foreach_get("co", positions)
+    finally:
+        scene.frame_set(now)
+    return positions.reshape(-1, 3)
+
+
+def store_rest(obj):
+    """Store or clear the rest attribute as the object needs; return sentences for the user."""
+    mesh = obj.data
+    if needs_generated(obj):
+        if obj.ltmd.rest_mode != "BASIS":
+            raise SourceError(
+                f"{obj.name}: with subdivision, live tension measures from the basis only; choose "
+                "the basis as rest state, or bake the tension"
+            )
+        if is_writable(mesh):
+            clear_rest(mesh)
+        return [f"{obj.name}: {live_limits(obj)}"]
+    if not is_writable(mesh) or obj.mode == "EDIT":
+        if obj.ltmd.rest_mode != "BASIS":
+            raise SourceError(f"{obj.name}: the rest state cannot be stored in this mesh now")
+        return [f"{obj.name}: the deformation shows in final renders only"]
+    positions = rest_positions(obj)
+    attribute = mesh.attributes.get(REST_ATTRIBUTE)
+    if attribute and (attribute.data_type, attribute.domain) != ("FLOAT_VECTOR", "POINT"):
+        mesh.attributes.remove(attribute)
+        attribute = None
+    if attribute is None:
+        attribute = mesh.attributes.new(REST_ATTRIBUTE, "FLOAT_VECTOR", "POINT")
+    attribute.data.foreach_set("vector", positions.ravel())
+    mesh.update_tag()
+    return []
+
+
+def clear_rest(mesh):
+    attribute = mesh.attributes.get(REST_ATTRIBUTE)
+    if attribute:
+        mesh.attributes.remove(attribute)
+
+
+def materials(obj):
+    """The set-up materials of the object, each once."""
+    return list(
+        dict.fromkeys(s.material for s in obj.material_slots if surface.is_set_up(s.material))
+    )
+
+
+def users(material):
+    """The objects that show the material."""
+    return [
+        obj
+        for obj in bpy.data.objects
+        if any(slot.material == material for slot in obj.material_slots)
+    ]
+
+
+def own_copy(obj, material):
+    """A copy of the material for this object alone, in the slots that showed it."""
+    copy = material.copy()
+    copy.name = f"{material.name} {obj.name}"
+    assign(obj, material, copy)
+    return copy
+
+
+def assign(obj, old, new):
+    """Replace a material in the object's slots without touching other users of its mesh."""
+    for slot in obj.material_slots:
+        if slot.material == old:
+            if slot.link == "DATA" and (obj.data.users > 1 or not is_writable(obj.data)):
+                slot.link = "OBJECT"
+            slot.material = new
+
+
+def switch_to_live(obj, material):
+    """Measure while rendering; return sentences for the user. Raises SourceError."""
+    told = store_rest(obj)
+    if surface.is_set_up(material):
+        tree = material.node_tree
+        _clear(material)
+        lobe, box = surface.lobe(material), surface.frame(material)
+        uv = surface.own(tree.nodes.new("ShaderNodeUVMap"), "source", box)
+        uv.uv_map = obj.ltmd.uv_map
+        tension = surface.own(nodes.group_node(tree, live_tension), "source", box)
+        _place(lobe, tension, uv)
+        tree.links.new(uv.outputs["UV"], tension.inputs["UV"])
+        _connect(tree, tension, lobe)
+    obj.ltmd.source = "LIVE"
+    return told
+
+
+def switch_to_texture(obj, material, files):
+    """Read baked images; return sentences for the user.
+
+    files: {udim: {"path": file of the first frame, "frames": sorted numbers, ...}}. Files are
+    numbered like the scene's frames. A material that other objects show becomes a copy for obj.
+    """
+    told = []
+    others = [other.name for other in users(material) if other != obj]
+    if others:
+        shared, material = material, own_copy(obj, material)
+        told.append(
+            f"{obj.name} has its own copy of {shared.name} now, as the images are its own; "
+            f"{', '.join(others)} keep{'s' if len(others) == 1 else ''} {shared.name}"
+        )
+    tree = material.node_tree
+    _clear(material)
+    lobe, box = surface.lobe(material), surface.frame(material)
+    uv = surface.own(tree.nodes.new("ShaderNodeUVMap"), "source", box)
+    uv.uv_map = obj.ltmd.uv_map or _render_uv(obj.data)
+    uv.location = (lobe.location.x - 1100, lobe.location.y)
+    previous = None
+    for index, (udim, entry) in enumerate(sorted(files.items())):
+        udim = int(udim)
+        x, y = (udim - 1001) % 10, (udim - 1001) // 10
+        shifted = uv.outputs["UV"]
+        if (x, y) != (0, 0):
+            shift = surface.own(tree.nodes.new("ShaderNodeVectorMath"), "source", box)
+            shift.operation = "SUBTRACT"
+            shift.inputs[1].default_value = (x, y, 0.0)
+            shift.location = (lobe.location.x - 900, lobe.location.y - 300 * index)
+            tree.links.new(shifted, shift.inputs[0])
+            shifted = shift.outputs["Vector"]
+        picture = surface.own(tree.nodes.new("ShaderNodeTexImage"), "source", box)
+        picture.location = (lobe.location.x - 700, lobe.location.y - 300 * index)
+        _show_sequence(picture, _image(obj, udim, entry["path"]), entry["frames"])
+        tree.links.new(shifted, picture.inputs["Vector"])
+        tension = surface.own(nodes.group_node(tree, texture_tension), "source", box)
+        tension.location = (lobe.location.x - 300, lobe.location.y - 300 * index)
+        tension.inputs["Tile"].default_value = udim
+        tree.links.new(picture.outputs["Color"], tension.inputs["Image"])
+        tree.links.new(uv.outputs["UV"], tension.inputs["UV"])
+        if previous:
+            tree.links.new(previous.outputs["Tension"], tension.inputs["Previous"])
+        previous = tension
+    if previous:
+        _connect(tree, previous, lobe)
+    obj.ltmd.source = "TEXTURE"
+    return told
+
+
+def _clear(material):
+    """Remove the present source and the images that only it showed."""
+    for node in surface.our_nodes(material, "source"):
+        image = getattr(node, "image", None)
+        material.node_tree.nodes.remove(node)
+        if image and image.users == 0:
+            bpy.data.images.remove(image)
+
+
+def clear(material):
+    """Remove the source's nodes."""
+    _clear(material)
+
+
+def _connect(tree, tension, lobe):
+    for name in ("Tension", "Tangent"):
+        tree.links.new(tension.outputs[name], lobe.inputs[name])
+
+
+def _place(lobe, tension, uv):
+    tension.location = (lobe.location.x - 300, lobe.location.y)
+    uv.location = (lobe.location.x - 550, lobe.location.y)
+
+
+def _render_uv(mesh):
+    return next((layer.name for layer in mesh.uv_layers if layer.active_render), "")
+
+
+def _image(obj, udim, path):
+    path = bpy.path.abspath(str(path))
+    if bpy.data.filepath:
+        try:
+            path = bpy.path.relpath(path)
+        except ValueError:
+            pass  # another drive
+    image = bpy.data.images.new(f"{obj.name} tension {udim}", 1, 1, float_buffer=True)
+    # The source first: assigning it later would look for the file under the old settings.
+    image.source = "SEQUENCE"
+    image.filepath = path
+    # Never a colour space name: "Non-Color" is unknown in other colour configurations.
+    image.colorspace_settings.is_data = True
+    image.alpha_mode = "CHANNEL_PACKED"
+    return image
+
+
+def _show_sequence(node, image, frames):
+    node.image = image
+    node.extension = "EXTEND"
+    node.interpolation = "Linear"
+    node.projection = "FLAT"
+    user = node.image_user
+    # The file's number is the scene's frame: start 1, no offset, a duration that never clips.
+    user.frame_start = 1
+    user.frame_offset = 0
+    user.frame_duration = max(1, max(frames))
+    user.use_cyclic = False
+    user.use_auto_refresh = True

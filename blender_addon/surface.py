@@ -1,0 +1,238 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The LTMD part of a material: its own nodes and output for Cycles beside the user's tree.
+
+The user's nodes stay as they are and feed the EEVEE output. Of them only the outputs' target and
+active flag change; both are recorded in Material.ltmd.record and restored by remove().
+"""
+
+import json
+from math import pi, sqrt
+
+from . import nodes
+from .nodes import glossy
+
+VERSION = 1
+KEY = "ltmd"  # custom property of every node that is ours: "surface" or "source"
+
+NOT_CARRIED = (
+    "Subsurface Weight",
+    "Transmission Weight",
+    "Coat Weight",
+    "Sheen Weight",
+    "Thin Film Thickness",
+)
+
+
+def is_set_up(material):
+    return material is not None and material.ltmd.set_up > 0
+
+
+def lobe(material):
+    """The LTMD Glossy node, or None."""
+    for node in material.node_tree.nodes if material.node_tree else ():
+        if KEY in node and node.type == "GROUP" and node.node_tree:
+            if node.node_tree.get(nodes.GROUP_KEY) == glossy.NAME:
+                return node
+    return None
+
+
+def our_nodes(material, part=None):
+    tree = material.node_tree
+    return [n for n in tree.nodes if KEY in n and (part is None or n[KEY] == part)]
+
+
+def own(node, part, parent=None):
+    """Mark a node as ours."""
+    node[KEY] = part
+    node.parent = parent
+    return node
+
+
+def frame(material):
+    """The frame around our nodes."""
+    return next(n for n in our_nodes(material, "surface") if n.type == "FRAME")
+
+
+def add(material):
+    """Give the material its LTMD surface for Cycles; return sentences for the user."""
+    if not material.node_tree or not material.use_nodes:
+        record = {"use_nodes": False}
+        material.use_nodes = True
+    else:
+        record = {}
+    tree = material.node_tree
+    told = []
+
+    old_output = tree.get_output_node("CYCLES") or tree.get_output_node("EEVEE")
+    outputs = [n for n in tree.nodes if n.type == "OUTPUT_MATERIAL"]
+    record["outputs"] = [[n.name, n.target, n.is_active_output] for n in outputs]
+    active = tree.nodes.active
+    record["active"] = active.name if active else ""
+    principled = _principled(old_output)
+    if principled is None:
+        told.append(
+            f"{material.name}: no Principled BSDF found, so the LTMD surface takes the viewport "
+            "colour; set its colour in the LTMD nodes"
+        )
+
+    bottom = min((n.location.y - 600 for n in tree.nodes if n.parent is None), default=0)
+    left = old_output.location.x - 900 if old_output else 0
+    box = own(tree.nodes.new("NodeFrame"), "surface")
+    box.label = "LTMD (Cycles)"
+
+    def new(kind, x, y):
+        node = own(tree.nodes.new(kind), "surface", box)
+        node.location = (left + x, bottom + y)
+        return node
+
+    output = new("ShaderNodeOutputMaterial", 900, 0)
+    output.name = output.label = "LTMD Output"
+    reflection = own(nodes.group_node(tree, glossy), "surface", box)
+    reflection.location = (left + 200, bottom - 250)
+    diffuse = new("ShaderNodeBsdfDiffuse", 200, 0)
+    fresnel = new("ShaderNodeFresnel", 200, 150)
+    mix = new("ShaderNodeMixShader", 600, 0)
+
+    link = tree.links.new
+    link(fresnel.outputs[0], mix.inputs[0])
+    link(diffuse.outputs[0], mix.inputs[1])
+    link(reflection.outputs[0], mix.inputs[2])
+    surface = mix.outputs[0]
+
+    reflection.inputs["Color"].default_value = (1.0, 1.0, 1.0, 1.0)
+    if principled is None:
+        diffuse.inputs["Color"].default_value = material.diffuse_color
+        reflection.inputs["Roughness"].default_value = material.roughness
+    else:
+        surface = _carry_over(principled, tree, new, diffuse, reflection, fresnel, mix, surface)
+        told += [
+            f"{material.name}: {name.replace(' Weight', '').lower()} is left out in Cycles"
+            for name in NOT_CARRIED
+            if _in_use(principled, name)
+        ]
+
+    link(surface, output.inputs["Surface"])
+    for name in ("Volume", "Displacement"):
+        if old_output and old_output.inputs[name].is_linked:
+            link(old_output.inputs[name].links[0].from_socket, output.inputs[name])
+    for node in outputs:
+        if node.target == "ALL":
+            node.target = "EEVEE"
+    output.target = "CYCLES"
+    output.is_active_output = True
+    # Making one output active may switch off others: EEVEE still needs one of its own.
+    if old_output and old_output.target == "EEVEE":
+        old_output.is_active_output = True
+
+    material.ltmd.record = json.dumps(record)
+    material.ltmd.set_up = VERSION
+    return told
+
+
+def remove(material):
+    """Take away exactly what add() and the sources made."""
+    tree = material.node_tree
+    for node in our_nodes(material):
+        tree.nodes.remove(node)
+    record = json.loads(material.ltmd.record or "{}")
+    kept = [entry for entry in record.get("outputs", ()) if entry[0] in tree.nodes]
+    for name, target, _active in kept:
+        tree.nodes[name].target = target
+    for name, _target, active in sorted(kept, key=lambda entry: entry[2]):
+        tree.nodes[name].is_active_output = active
+    tree.nodes.active = tree.nodes.get(record.get("active", ""))
+    if record.get("use_nodes") is False:
+        material.use_nodes = False
+    material.ltmd.record = ""
+    material.ltmd.set_up = 0
+
+
+def _principled(output):
+    """The Principled BSDF that feeds the output, also through mixed shaders."""
+    if output is None:
+        return None
+    waiting = [output.inputs["Surface"]]
+    seen = set()
+    while waiting:
+        for wire in waiting.pop(0).links:
+            node = wire.from_node
+            if node.type == "BSDF_PRINCIPLED":
+                return node
+            if node.name not in seen:
+                seen.add(node.name)
+                waiting += [s for s in node.inputs if s.type == "SHADER" or node.type == "REROUTE"]
+    return None
+
+
+def _in_use(node, name):
+    socket = node.inputs.get(name)
+    return socket is not None and (socket.is_linked or socket.default_value > 0)
+
+
+def _carry_over(principled, tree, new, diffuse, reflection, fresnel, mix, surface):
+    """Wire the Principled's values into our nodes; return the socket of the whole surface."""
+    link = tree.links.new
+    inputs = principled.inputs
+
+    def follow(name, target):
+        if inputs[name].is_linked:
+            link(inputs[name].links[0].from_socket, target)
+        else:
+            target.default_value = inputs[name].default_value
+
+    follow("Base Color", diffuse.inputs["Color"])
+    follow("Roughness", reflection.inputs["Roughness"])
+    if inputs["Normal"].is_linked:
+        for node in (diffuse, reflection, fresnel):
+            link(inputs["Normal"].links[0].from_socket, node.inputs["Normal"])
+
+    level = inputs["Specular IOR Level"]
+    if inputs["IOR"].is_linked or level.is_linked:
+        follow("IOR", fresnel.inputs["IOR"])
+    else:
+        # The level scales the reflection at normal incidence: put it into the IOR.
+        ior = inputs["IOR"].default_value
+        straight = min(((ior - 1) / (ior + 1)) ** 2 * 2 * level.default_value, 0.99)
+        fresnel.inputs["IOR"].default_value = (1 + sqrt(straight)) / (1 - sqrt(straight))
+
+    amount = inputs["Anisotropic"]
+    if not amount.is_linked and amount.default_value > 0:
+        # Principled is rough along its tangent: alpha_x = r^2 / aspect, aspect^2 = 1 - 0.9 A.
+        reflection.inputs["Stretch"].default_value = sqrt(1 - 0.9 * amount.default_value) - 1
+        turn = inputs["Anisotropic Rotation"]
+        if not turn.is_linked:
+            reflection.inputs["Rotation"].default_value = turn.default_value * 2 * pi
+
+    if _in_use(principled, "Metallic"):
+        tint = new("ShaderNodeMix", 0, -250)
+        tint.data_type = "RGBA"
+        # The Mix node has one socket of each name per data type: go by identifier.
+        sockets = {s.identifier: s for s in (*tint.inputs, *tint.outputs)}
+        sockets["A_Color"].default_value = (1.0, 1.0, 1.0, 1.0)
+        follow("Metallic", sockets["Factor_Float"])
+        follow("Base Color", sockets["B_Color"])
+        link(sockets["Result_Color"], reflection.inputs["Color"])
+        most = new("ShaderNodeMath", 420, 150)
+        most.operation = "MAXIMUM"
+        follow("Metallic", most.inputs[0])
+        link(fresnel.outputs[0], most.inputs[1])
+        link(most.outputs[0], mix.inputs[0])
+
+    if _in_use(principled, "Emission Strength"):
+        glow = new("ShaderNodeEmission", 600, -180)
+        follow("Emission Color", glow.inputs["Color"])
+        follow("Emission Strength", glow.inputs["Strength"])
+        both = new("ShaderNodeAddShader", 700, 0)
+        link(surface, both.inputs[0])
+        link(glow.outputs[0], both.inputs[1])
+        surface = both.outputs[0]
+
+    alpha = inputs["Alpha"]
+    if alpha.is_linked or alpha.default_value < 1:
+        clear = new("ShaderNodeBsdfTransparent", 600, 180)
+        cut = new("ShaderNodeMixShader", 750, 100)
+        follow("Alpha", cut.inputs[0])
+        link(clear.outputs[0], cut.inputs[1])
+        link(surface, cut.inputs[2])
+        surface = cut.outputs[0]
+    return surface
