@@ -256,17 +256,36 @@ TEST(TexelCoverage, CentresOnASharedEdgeAreNoOverlap) {
 }
 
 TEST(TexelCoverage, SharedEdgesLeaveNoCrackAndNoOverlap) {
-    // A fan of thin triangles around a point, whole turn: each centre in exactly one.
+    // A whole turn of thin triangles around a point: each centre in exactly one, also where
+    // rounding moves the edges by more than it moves the centres.
+    for (const double radius : {0.9, 1e10}) {
+        Layout layout;
+        const auto rim = [&](int i) {
+            const double a = 2 * std::numbers::pi * (i % 997) / 997;
+            return Vec2f{static_cast<float>(0.5 + radius * std::cos(a)),
+                         static_cast<float>(0.5 + radius * std::sin(a))};
+        };
+        for (int i = 0; i < 997; ++i) layout.add({0.4987f, 0.5013f}, rim(i), rim(i + 1));
+        const TexelCoverage coverage(layout.view(), 300, 200, {}, 0);
+        EXPECT_EQ(coverage.covered(), 300u * 200u);
+        EXPECT_EQ(coverage.overlapping(), 0u);
+    }
+}
+
+TEST(TexelCoverage, TheLowestOfEquallyNearTrianglesWins) {
+    // Texel (32, 32): two texels from the border of triangle 1 and from a vertex that triangle 0
+    // shares without a border edge there.
+    const auto uv = [](float x, float y) { return Vec2f{(32.5f + x) / 64, 1 - (32.5f + y) / 64}; };
     Layout layout;
-    const auto rim = [](int i) {
-        const double a = 2 * std::numbers::pi * (i % 997) / 997;
-        return Vec2f{static_cast<float>(0.5 + 0.9 * std::cos(a)),
-                     static_cast<float>(0.5 + 0.9 * std::sin(a))};
-    };
-    for (int i = 0; i < 997; ++i) layout.add({0.4987f, 0.5013f}, rim(i), rim(i + 1));
-    const TexelCoverage coverage(layout.view(), 300, 200, {}, 0);
-    EXPECT_EQ(coverage.covered(), 300u * 200u);
-    EXPECT_EQ(coverage.overlapping(), 0u);
+    layout.add(uv(2, 0), uv(10, -3), uv(10, 3));
+    layout.add(uv(-2, -9), uv(-2, 9), uv(-9, 0));
+    layout.add(uv(2, 0), uv(10, 3), uv(8, 9));
+    layout.add(uv(2, 0), uv(8, -9), uv(10, -3));
+    const TexelCoverage coverage(layout.view(), 64, 64, {}, 4);
+    const CoverageTexel texel = coverage.texels()[32 * 64 + 32];
+    EXPECT_EQ(texel.triangle, 0);
+    EXPECT_EQ(texel.b0, 1);
+    expect_as_model(layout, 64, 64, {}, 4);
 }
 
 TEST(TexelCoverage, CountsOverlap) {
