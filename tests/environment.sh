@@ -181,7 +181,7 @@ ltmd_wheel_build() {
         ltmd_say "building the wheel"
         rm -rf "$folder" "$folder.partial"
         CMAKE_PREFIX_PATH=$LTMD_OPENEXR ltmd_quiet "$LTMD_TOOLS/bin/python" -m pip wheel \
-            --no-build-isolation --no-deps -w "$folder.partial" "$LTMD_ROOT" || return 1
+            --no-build-isolation --no-deps -w "$folder.partial" "$LTMD_ROOT" || { rm -rf "$folder.partial" && return 1; }
         mv "$folder.partial" "$folder"
         find "$LTMD_CACHE" -maxdepth 1 -name 'wheels-*' -mtime +3 -exec rm -rf {} +
     fi

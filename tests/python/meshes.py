@@ -102,7 +102,9 @@ def sphere(segments=16, rings=8):
     for i in range(1, rings):
         t = np.pi * (i / rings - 0.5)
         a = 2 * np.pi * np.arange(segments) / segments
-        positions += list(np.stack([np.cos(t) * np.cos(a), np.cos(t) * np.sin(a), 0 * a + np.sin(t)], 1))
+        positions += list(
+            np.stack([np.cos(t) * np.cos(a), np.cos(t) * np.sin(a), 0 * a + np.sin(t)], 1)
+        )
     positions.append((0, 0, 1))
 
     def vertex(i, j):
@@ -139,7 +141,7 @@ def mirrored(columns=4, rows=4):
 
 
 def random_closed(rng, segments=11, rings=7):
-    """A closed, bumpy surface whose UVs are cut in turned islands, one mirrored, all overlapping."""
+    """A closed, bumpy surface whose UVs are cut in turned islands, one mirrored."""
     shape = sphere(segments, rings)
     bump = 1 + 0.2 * rng.uniform(-1, 1, len(shape.positions))
     uv = shape.corner_uv[shape.triangles].astype(float) - 0.5

@@ -62,9 +62,7 @@ def in_frame(frame, e1, e2):
 def triangle_tension(triangles, corner_vert, corner_uv, rest, deformed):
     """T = D R^-1 per triangle, the identity where it is not defined, singular values clamped."""
     t = np.tile(IDENTITY, (len(triangles), 1))
-    good = ~is_degenerate(triangles, corner_vert, rest) & (
-        uv_area_sign(triangles, corner_uv) != 0
-    )
+    good = ~is_degenerate(triangles, corner_vert, rest) & (uv_area_sign(triangles, corner_uv) != 0)
     tris = np.asarray(triangles)[good]
     if not len(tris):
         return t
