@@ -15,7 +15,7 @@ normal ltmd_mesh_side(normal n, vector pu, vector pv, normal ng)
 vector ltmd_frame_x(vector tangent, normal n)
 {
     vector x = tangent - n * dot(n, tangent);
-    if (!(dot(x, x) > 1e-12 * dot(tangent, tangent)))
+    if (!isfinite(dot(x, x)) || dot(x, x) <= 1e-12 * dot(tangent, tangent))
         x = cross(n, abs(n[0]) < 0.9 ? vector(1, 0, 0) : vector(0, 1, 0));
     return normalize(x);
 }

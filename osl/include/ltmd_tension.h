@@ -7,10 +7,13 @@
 // the sign of a tangent never matters; its side (see ltmd_frame.h) does.
 
 // A tension that is safe to use: not finite or without a positive diagonal -> identity; principal
-// stretches clamped to [1e-3, 1e3], as the library clamps them.
+// stretches clamped to [1e-3, 1e3], as the library clamps them. Blender's sockets turn infinity
+// into the largest float, so anything huge counts as not finite. (OSL's comparisons are unordered:
+// with a NaN each of them is true.)
 vector ltmd_usable_tension(vector t)
 {
-    if (!(isfinite(t[0]) && isfinite(t[1]) && isfinite(t[2]) && t[0] > 0 && t[2] > 0))
+    float size = max(abs(t[0]), max(abs(t[1]), abs(t[2])));
+    if (!isfinite(t[0]) || !isfinite(t[1]) || !isfinite(t[2]) || size > 1e9 || t[0] <= 0 || t[2] <= 0)
         return vector(1, 0, 1);
     vector bounded = clamp(t, vector(-1e6), vector(1e6));
     // Eigenvalues of C = T^t T are the squared principal stretches.
@@ -39,7 +42,7 @@ vector ltmd_tension_of_edges(vector eu, vector ev, vector ru, vector rv, vector 
 {
     float area = length(cross(eu, ev));
     float rest_area = length(cross(ru, rv));
-    if (!(area > 0 && rest_area > 1e-7 * max(dot(ru, ru), dot(rv, rv))))
+    if (area <= 0 || rest_area <= 1e-7 * max(dot(ru, ru), dot(rv, rv)))
         return vector(1, 0, 1);
     float side = dot(cross(eu, ev), n) < 0 ? -1 : 1;
     float au = length(eu), rest_au = length(ru);
