@@ -1,0 +1,271 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What the example scenes share: the installed extension, the studio, the three rows of cells.
+
+A scene module calls start() before anything else, because Blender reads the user folder when bpy
+is imported. The cells and a description of the sheet go to OUT; contact_sheet.py composes them.
+"""
+
+import argparse
+import json
+import os
+import sys
+import time
+from pathlib import Path
+
+EXTENSION = "bl_ext.user_default.ltmd"
+LARGEST_AREA = 2.0
+# Blue, white, orange: told apart by everyone, and white is "as at rest". sRGB, even steps of log(area).
+RAMP = [(0.10, 0.25, 0.62), (0.36, 0.62, 0.86), (0.93, 0.93, 0.92), (0.97, 0.62, 0.28), (0.72, 0.16, 0.06)]
+_began = time.perf_counter()
+
+
+def say(text):
+    # Blender talks on stdout.
+    print(f"      {time.perf_counter() - _began:5.1f} s  {text}", file=sys.stderr, flush=True)
+
+
+def start(name):
+    """The arguments; bpy with the extension installed in a clean user folder under OUT."""
+    parser = argparse.ArgumentParser(prog=f"{name}.py")
+    parser.add_argument("--extension", type=Path, required=True, help="the extension's zip")
+    parser.add_argument("--out", type=Path, required=True, help="folder for everything made here")
+    parser.add_argument("--samples", type=int, default=192)
+    parser.add_argument("--scale", type=float, default=1.0, help="size of the cells")
+    args = parser.parse_args()
+    args.out = args.out.resolve()
+    args.out.mkdir(parents=True, exist_ok=True)
+    os.environ["BLENDER_USER_RESOURCES"] = str(args.out / "blender_user")
+    import bpy
+
+    bpy.utils.expose_bundled_modules()
+    bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True, app_template="")
+    bpy.ops.extensions.package_install_files(
+        filepath=str(args.extension.resolve()), repo="user_default", enable_on_install=True
+    )
+    if not hasattr(bpy.types, "LTMD_OT_bake"):
+        sys.exit(f"error: {args.extension} was installed, but its operators are not there")
+    return args
+
+
+def finish():
+    """Ends the process at once: tearing down bpy as a module can crash after all is written."""
+    sys.stdout.flush()
+    sys.stderr.flush()
+    os._exit(0)
+
+
+def link(data_block_or_object):
+    import bpy
+
+    bpy.context.scene.collection.objects.link(data_block_or_object)
+    return data_block_or_object
+
+
+def aim(obj, place, target):
+    from mathutils import Vector
+
+    obj.location = place
+    obj.rotation_euler = (Vector(target) - Vector(place)).to_track_quat("-Z", "Y").to_euler()
+
+
+def studio(args, size, view, target, height, lights):
+    """Camera, lights and a renderer with no denoiser and no filter that would touch a highlight."""
+    import bpy
+
+    scene = bpy.context.scene
+    camera = link(bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera")))
+    camera.data.type = "ORTHO"
+    camera.data.ortho_scale = height * max(1, size[0] / size[1])
+    aim(camera, view, target)
+    scene.camera = camera
+    for place, power, (width, length) in lights:
+        lamp = bpy.data.lights.new("Light", "AREA")
+        lamp.energy, lamp.shape, lamp.size, lamp.size_y = power, "RECTANGLE", width, length
+        aim(link(bpy.data.objects.new("Light", lamp)), place, target)
+    world = scene.world = bpy.data.worlds.new("World")
+    world.use_nodes = True
+    world.node_tree.nodes["Background"].inputs["Color"].default_value = (0.045, 0.055, 0.075, 1)
+
+    scene.render.engine = "CYCLES"
+    scene.cycles.device = "CPU"
+    scene.cycles.samples = args.samples
+    scene.cycles.use_adaptive_sampling = False
+    scene.cycles.use_denoising = False
+    scene.cycles.blur_glossy = 0
+    scene.cycles.max_bounces = 1
+    scene.cycles.sample_clamp_indirect = 1
+    scene.render.resolution_x, scene.render.resolution_y = (round(args.scale * n) for n in size)
+    scene.render.film_transparent = True
+    scene.render.image_settings.file_format = "PNG"
+    scene.render.image_settings.color_mode = "RGBA"
+    scene.view_settings.view_transform = "Standard"
+
+
+def paint(name, colour, roughness, metallic=0.0, ior=1.5):
+    """A material as an artist would make it: one Principled BSDF, nothing of LTMD."""
+    import bpy
+
+    material = bpy.data.materials.new(name)
+    material.use_nodes = True
+    inputs = material.node_tree.nodes["Principled BSDF"].inputs
+    inputs["Base Color"].default_value = (*colour, 1)
+    inputs["Metallic"].default_value = metallic
+    inputs["IOR"].default_value = ior
+    inputs["Roughness"].default_value = roughness
+    return material
+
+
+def linear(srgb):
+    return [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in srgb]
+
+
+def area_colours(files, first, last, lines=0):
+    """A material that shows the area ratio t11 · t22 of baked images, read by stock nodes."""
+    import math
+
+    import bpy
+
+    material = bpy.data.materials.new("Baked tension")
+    material.use_nodes = True
+    tree = material.node_tree
+    tree.nodes.clear()
+
+    def node(kind, *sources, **settings):
+        made = tree.nodes.new(kind)
+        for key, value in settings.items():
+            setattr(made, key, value)
+        for socket, source in zip(made.inputs, sources):
+            if isinstance(source, bpy.types.NodeSocket):
+                tree.links.new(source, socket)
+            elif source is not None:
+                socket.default_value = source
+        return made
+
+    def maths(operation, *sources, **settings):
+        return node("ShaderNodeMath", *sources, operation=operation, **settings).outputs[0]
+
+    image = bpy.data.images.load(str(files[first]))
+    image.source = "SEQUENCE"
+    image.colorspace_settings.is_data = True
+    texture = node("ShaderNodeTexImage", image=image)
+    texture.image_user.frame_duration = last
+    texture.image_user.frame_start = 1
+    texture.image_user.use_auto_refresh = True
+    t = node("ShaderNodeSeparateXYZ", texture.outputs["Color"]).outputs
+    half = math.log(LARGEST_AREA)
+    ratio = maths("LOGARITHM", maths("MULTIPLY", t[0], t[2]), math.e)
+    ramp = node("ShaderNodeValToRGB", maths("MULTIPLY_ADD", ratio, 0.5 / half, 0.5))
+    elements = ramp.color_ramp.elements
+    while len(elements) < len(RAMP):
+        elements.new(0.5)
+    for index, colour in enumerate(RAMP):
+        elements[index].position = index / (len(RAMP) - 1)
+        elements[index].color = (*linear(colour), 1)
+    # A little darker where the surface turns away, so that its form can be read.
+    facing = node("ShaderNodeLayerWeight", 0.5).outputs["Facing"]
+    light = maths("MULTIPLY_ADD", maths("POWER", facing, 2.0), -0.55, 1.0)
+    if lines:
+        # Lines drawn on the surface at rest show which way it was stretched.
+        uv = node("ShaderNodeSeparateXYZ", node("ShaderNodeTexCoord").outputs["UV"]).outputs
+        near = [
+            maths("PINGPONG", maths("MULTIPLY", axis, float(count)), 0.5)
+            for axis, count in zip(uv, lines)
+        ]
+        line = maths("LESS_THAN", maths("MINIMUM", *near), 0.03)
+        light = maths("MULTIPLY", light, maths("MULTIPLY_ADD", line, -0.3, 1.0))
+    emission = node("ShaderNodeEmission", ramp.outputs["Color"], light)
+    node("ShaderNodeOutputMaterial", emission.outputs[0])
+    return material
+
+
+def stretch_range(file):
+    """Smallest and largest principal stretch in a baked image."""
+    import ltmd
+
+    pixels = ltmd.read_exr(str(file))[..., :3].reshape(-1, 3)
+    covered = pixels[(pixels != (1, 0, 1)).any(axis=1)]
+    stretch = ltmd.stretch(covered if len(covered) else pixels)
+    return float(stretch[:, 1].min()), float(stretch[:, 0].max())
+
+
+def bake(obj, args, first, last, size):
+    """Sets LTMD up, bakes and turns the material to the images; the frame -> file dictionary."""
+    import bpy
+
+    select(obj)
+    bpy.ops.ltmd.setup()
+    began = time.perf_counter()
+    folder = args.out / "tension"
+    bpy.ops.ltmd.bake(frames=f"{first}-{last}", size=size, directory=str(folder))
+    files = {n: folder / f"{obj.name}_tension.{n:04d}.exr" for n in range(first, last + 1)}
+    missing = [str(path) for path in files.values() if not path.exists()]
+    if missing:
+        sys.exit(f"error: the bake left out {len(missing)} files, the first is {missing[0]}")
+    seconds = time.perf_counter() - began
+    say(f"{len(files)} frames of {size} x {size} baked in {seconds:.1f} s into {folder}")
+    return files
+
+
+def set_strength(material, value):
+    """How much of the deformation the highlights follow: 0 is the material without LTMD."""
+    lobe = next(node for node in material.node_tree.nodes if "Strength" in node.inputs and node.type == "GROUP")
+    lobe.inputs["Strength"].default_value = value
+
+
+def select(obj):
+    import bpy
+
+    for other in bpy.context.view_layer.objects:
+        other.select_set(other == obj)
+    bpy.context.view_layer.objects.active = obj
+
+
+def render_row(args, row, frames):
+    """One picture per frame; their paths."""
+    import bpy
+
+    scene = bpy.context.scene
+    paths = []
+    for frame in frames:
+        scene.frame_set(frame)
+        path = args.out / "cells" / f"{row}_{frame:04d}.png"
+        scene.render.filepath = str(path)
+        bpy.ops.render.render(write_still=True)
+        paths.append(str(path))
+    say(f"row '{row}' rendered")
+    return paths
+
+
+def three_rows(obj, args, title, columns, files, first, last, lines=0):
+    """Renders plain, LTMD and measured rows and writes the description of the sheet.
+
+    columns: (frame, caption) in the order of the sheet.
+    """
+    import bpy
+
+    scene = bpy.context.scene
+    frames = [frame for frame, _ in columns]
+    ranges = {frame: stretch_range(files[frame]) for frame in frames}
+    for frame, caption in columns:
+        low, high = ranges[frame]
+        say(f"frame {frame:3d}, {caption}: principal stretch {low:.2f} to {high:.2f}")
+    material = obj.active_material
+    set_strength(material, 0)
+    rows = [("Plain material", "same roughness\neverywhere", render_row(args, "plain", frames))]
+    set_strength(material, 1)
+    rows.append(("With LTMD", "stretched: glossier\nsqueezed: duller", render_row(args, "ltmd", frames)))
+    bpy.ops.wm.save_mainfile()
+
+    obj.active_material = area_colours(files, first, last, lines)
+    scene.cycles.samples = 16
+    rows.append(("Measured stretch", "baked to float EXR,\none per frame", render_row(args, "measured", frames)))
+    sheet = {
+        "title": title,
+        "columns": [
+            [caption, "stretch {:.2f} – {:.2f}".format(*ranges[frame])] for frame, caption in columns
+        ],
+        "rows": rows,
+        "ramp": RAMP,
+        "legend": ["half the area", "as at rest", "twice the area"],
+    }
+    (args.out / "sheet.json").write_text(json.dumps(sheet, indent=1))
