@@ -15,7 +15,7 @@ def sentence(layout, context, text, icon="NONE", alert=False):
     column.alert = alert
     column.scale_y = 0.8
     width = context.region.width if context.region else 300
-    scale = context.preferences.system.ui_scale
+    scale = context.preferences.system.ui_scale or 1.0  # 0 in background
     lines = textwrap.wrap(text, max(20, int((width - 60 * scale) / (6.5 * scale))))
     for index, line in enumerate(lines):
         column.label(text=line, icon=icon if index == 0 else ("BLANK1" if icon != "NONE" else icon))

@@ -30,12 +30,7 @@ class SourceError(Exception):
 
 def needs_generated(obj):
     """Does a modifier of the object subdivide or rebuild the surface in renders?"""
-    return any(
-        m.show_render
-        and m.type not in MOVING | COPYING
-        and not (m.type == "SUBSURF" and m.subdivision_type == "SIMPLE")
-        for m in obj.modifiers
-    )
+    return any(m.show_render and m.type not in MOVING | COPYING for m in obj.modifiers)
 
 
 def live_limits(obj):

@@ -1,0 +1,469 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Set Up LTMD and Remove: what they add, that it renders, and that the user's tree comes back."""
+
+from pathlib import Path
+
+import numpy as np
+from blender_process import run
+
+PRELUDE = """
+import json
+from blender_addon import source, surface, setup
+
+def cube(name="Cube", uv=True):
+    c = [(x, y, z) for z in (-1, 1) for y in (-1, 1) for x in (-1, 1)]
+    f = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
+    uvs = [(k % 3 / 3 + x / 4, k // 3 / 2 + y / 3) for k in range(6)
+           for x, y in ((0, 0), (1, 0), (1, 1), (0, 1))]
+    return mesh_object(name, c, f, uvs if uv else None)
+
+def value(socket):
+    try:
+        v = socket.default_value
+    except AttributeError:
+        return None
+    return list(v) if hasattr(v, "__len__") and not isinstance(v, str) else v
+
+def dump(material):
+    tree = material.node_tree
+    return json.dumps({
+        "use_nodes": material.use_nodes,
+        "active": tree.nodes.active.name if tree.nodes.active else "",
+        "nodes": sorted([n.name, n.bl_idname, n.label, list(n.location), n.mute,
+                         getattr(n, "target", ""), getattr(n, "is_active_output", ""), n.select,
+                         [[s.name, value(s)] for s in n.inputs]] for n in tree.nodes),
+        "links": sorted([l.from_node.name, l.from_socket.identifier, l.to_node.name,
+                         l.to_socket.identifier] for l in tree.links),
+    }, sort_keys=True, default=str)
+
+def principled(material):
+    return next(n for n in material.node_tree.nodes if n.type == "BSDF_PRINCIPLED")
+
+def new_material(name, obj):
+    material = bpy.data.materials.new(name)
+    material.use_nodes = True
+    if obj:
+        obj.data.materials.append(material)
+    return material
+"""
+
+
+def test_remove_restores_every_tree():
+    result = run(
+        PRELUDE
+        + """
+def linked_colour(m):
+    noise = m.node_tree.nodes.new("ShaderNodeTexNoise")
+    m.node_tree.links.new(noise.outputs["Color"], principled(m).inputs["Base Color"])
+    m.node_tree.links.new(noise.outputs["Fac"], principled(m).inputs["Roughness"])
+    bump = m.node_tree.nodes.new("ShaderNodeBump")
+    m.node_tree.links.new(bump.outputs[0], principled(m).inputs["Normal"])
+    disp = m.node_tree.nodes.new("ShaderNodeDisplacement")
+    m.node_tree.links.new(disp.outputs[0], m.node_tree.nodes["Material Output"].inputs["Displacement"])
+def everything(m):
+    for name, v in (("Metallic", .5), ("Alpha", .5), ("Emission Strength", 1), ("Coat Weight", 1),
+                    ("Transmission Weight", 1), ("Anisotropic", .5)):
+        principled(m).inputs[name].default_value = v
+def mixed(m):
+    t = m.node_tree
+    mix, glass = t.nodes.new("ShaderNodeMixShader"), t.nodes.new("ShaderNodeBsdfGlass")
+    t.links.new(glass.outputs[0], mix.inputs[1])
+    t.links.new(principled(m).outputs[0], mix.inputs[2])
+    t.links.new(mix.outputs[0], t.nodes["Material Output"].inputs[0])
+def no_principled(m):
+    m.node_tree.nodes.remove(principled(m))
+def two_outputs(m):
+    t = m.node_tree
+    t.nodes["Material Output"].target = "EEVEE"
+    other = t.nodes.new("ShaderNodeOutputMaterial")
+    other.target = "CYCLES"
+    t.links.new(principled(m).outputs[0], other.inputs[0])
+def spare_output(m):
+    m.node_tree.nodes.new("ShaderNodeOutputMaterial").is_active_output = False
+def no_output(m):
+    m.node_tree.nodes.clear()
+def no_nodes(m):
+    m.use_nodes = False
+
+out = {}
+for make in (lambda m: None, linked_colour, everything, mixed, no_principled, two_outputs,
+             spare_output, no_output, no_nodes):
+    obj = cube()
+    material = new_material("M", obj)
+    make(material)
+    before, data = dump(material), [len(bpy.data.node_groups), len(bpy.data.texts), len(bpy.data.materials)]
+    bpy.ops.ltmd.setup(object_name=obj.name)
+    cycles_out = material.node_tree.get_output_node("CYCLES")
+    eevee_out = material.node_tree.get_output_node("EEVEE")
+    entry = dict(set_up=material.ltmd.set_up, source=obj.ltmd.source, texts=len(bpy.data.texts),
+                 cycles=cycles_out.label, eevee=eevee_out.label if eevee_out else None,
+                 attribute="ltmd_rest" in obj.data.attributes)
+    bpy.ops.ltmd.setup(object_name=obj.name)  # again: nothing twice
+    entry["lobes"] = sum(n.label == "LTMD Glossy" for n in material.node_tree.nodes)
+    bpy.ops.ltmd.remove(object_name=obj.name)
+    after = dump(material)
+    entry.update(same=before == after, left=obj.ltmd.source, before=before, after=after,
+                 attribute_left="ltmd_rest" in obj.data.attributes,
+                 data=data == [len(bpy.data.node_groups), len(bpy.data.texts), len(bpy.data.materials)])
+    out[make.__name__] = entry
+    bpy.data.objects.remove(obj)
+    bpy.data.materials.remove(material)
+report(out=out, engine=bpy.context.scene.render.engine, osl=bpy.context.scene.cycles.shading_system)
+"""
+    )
+    assert result["engine"] == "CYCLES" and result["osl"]
+    for name, entry in result["out"].items():
+        assert entry["set_up"] == 1 and entry["source"] == "LIVE", name
+        assert entry["cycles"] == "LTMD Output", name
+        assert entry["eevee"] != "LTMD Output" or name == "no_output", name
+        assert entry["attribute"] and not entry["attribute_left"], name
+        assert entry["texts"] == 0 and entry["lobes"] == 1, name
+        assert entry["same"], (name, entry["before"], entry["after"])
+        assert entry["left"] == "NONE" and entry["data"], name
+
+
+def test_an_object_without_material_gets_one_and_loses_it_again():
+    result = run(
+        PRELUDE
+        + """
+obj = cube(uv=False)
+bpy.ops.ltmd.setup(object_name="Cube")
+during = [m.name for m in obj.data.materials], obj.ltmd.source
+bpy.ops.ltmd.remove(object_name="Cube")
+report(during=during, after=[len(obj.data.materials), len(bpy.data.materials), list(obj.keys())])
+"""
+    )
+    assert result["during"][1] == "LIVE" and len(result["during"][0]) == 1
+    assert result["after"][:2] == [0, 0] and "ltmd_slot" not in result["after"][2]
+
+
+RENDERED = (
+    PRELUDE
+    + """
+def lit_scene():
+    cycles(32, 32, samples=8)
+    camera((4, -5, 3), ortho_scale=5)
+    light = bpy.data.objects.new("Sun", bpy.data.lights.new("Sun", "SUN"))
+    light.data.energy = 3
+    light.rotation_euler = (.5, .5, 0)
+    bpy.context.scene.collection.objects.link(light)
+"""
+)
+
+
+def test_renders_the_same_after_saving_and_in_a_blender_without_the_extension(tmp_path):
+    path = str(Path(tmp_path) / "scene.blend")
+    first = run(
+        RENDERED
+        + """
+lit_scene()
+obj = cube()
+material = new_material("Rubber", obj)
+principled(material).inputs["Base Color"].default_value = (.8, .1, .05, 1)
+obj.shape_key_add(name="Basis")
+key = obj.shape_key_add(name="Long")
+for point in key.data:
+    point.co.x *= 1.6
+    point.co.y *= .7
+key.value = 1
+bpy.ops.ltmd.setup(object_name="Cube")
+with_tension = render()[..., :3]
+surface.lobe(material).inputs["Strength"].default_value = 0
+without = render()[..., :3]
+surface.lobe(material).inputs["Strength"].default_value = 1
+bpy.ops.wm.save_as_mainfile(filepath=ARGUMENTS)
+report(picture=with_tension, difference=np.abs(with_tension - without).max())
+""",
+        arguments=path,
+    )
+    assert np.mean(first["picture"]) > 0.01 and first["difference"] > 1e-3
+    assert np.array(first["picture"])[16, 16, 0] > 3 * np.array(first["picture"])[16, 16, 2]
+    for addon in (True, False):
+        again = run(
+            """
+bpy.ops.wm.open_mainfile(filepath=ARGUMENTS)
+report(picture=render()[..., :3], texts=len(bpy.data.texts))
+""",
+            arguments=path,
+            addon=addon,
+        )
+        assert np.array_equal(first["picture"], again["picture"])
+        assert again["texts"] == 0
+    # And still removable in the reopened file.
+    removed = run(
+        """
+bpy.ops.wm.open_mainfile(filepath=ARGUMENTS)
+bpy.ops.ltmd.remove(object_name="Cube")
+m = bpy.data.materials["Rubber"]
+report(nodes=sorted(n.name for n in m.node_tree.nodes), groups=len(bpy.data.node_groups),
+       target=m.node_tree.nodes["Material Output"].target)
+""",
+        arguments=path,
+    )
+    assert removed["nodes"] == ["Material Output", "Principled BSDF"]
+    assert removed["groups"] == 0 and removed["target"] == "ALL"
+
+
+def test_linked_data_is_refused_in_words_and_overrides_work(tmp_path):
+    path = str(Path(tmp_path) / "library.blend")
+    run(
+        PRELUDE
+        + """
+obj = cube()
+new_material("Shared", obj)
+bpy.ops.wm.save_as_mainfile(filepath=ARGUMENTS)
+""",
+        arguments=path,
+    )
+    result = run(
+        PRELUDE
+        + """
+with bpy.data.libraries.load(ARGUMENTS, link=True) as (found, wanted):
+    wanted.objects = ["Cube"]
+linked = wanted.objects[0]
+bpy.context.scene.collection.objects.link(linked)
+try:
+    bpy.ops.ltmd.setup(object_name="Cube")
+    refused = "not refused"
+except RuntimeError as error:
+    refused = str(error)
+override = linked.override_create(remap_local_usages=True)
+told = setup.set_up(override)
+report(refused=refused, told=told, source=override.ltmd.source,
+       slots=[[s.link, s.material.name, s.material.library is None, surface.is_set_up(s.material)]
+              for s in override.material_slots],
+       mesh_attributes=list(override.data.attributes.keys()))
+""",
+        arguments=path,
+    )
+    assert "Make a library override first" in result["refused"]
+    assert result["source"] == "LIVE"
+    assert result["slots"] == [["OBJECT", "Shared Cube", True, True]]
+    assert "ltmd_rest" not in result["mesh_attributes"]
+    assert any("own copy" in sentence for sentence in result["told"])
+
+
+def test_shared_material_becomes_a_copy_only_for_textures():
+    result = run(
+        PRELUDE
+        + """
+a, b = cube("A"), cube("B")
+material = new_material("Shared", a)
+b.data.materials.append(material)
+twin = bpy.data.objects.new("Twin", a.data)  # shares the mesh as well
+link(twin)
+bpy.ops.object.select_all(action="SELECT")
+bpy.ops.ltmd.setup()
+live = [o.material_slots[0].material.name for o in (a, b, twin)]
+told = source.switch_to_texture(a, material, {1001: {"path": "/tmp/none.0001.exr", "frames": [1]}})
+after = [o.material_slots[0].material.name for o in (a, b, twin)]
+report(live=live, told=told, after=after, sources=[o.ltmd.source for o in (a, b, twin)])
+"""
+    )
+    assert result["live"] == ["Shared"] * 3
+    assert result["after"] == ["Shared A", "Shared", "Shared"]
+    assert "own copy" in result["told"][0] and "Twin" in result["told"][0]
+    assert result["sources"] == ["TEXTURE", "LIVE", "LIVE"]
+
+
+def test_each_frame_shows_its_own_file(tmp_path):
+    result = run(
+        PRELUDE
+        + """
+scene = cycles(4, 4)
+obj = mesh_object("Plane", [(-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0)], [(0, 1, 2, 3)],
+                  [(0, 0), (1, 0), (1, 1), (0, 1)])
+camera((0, 0, 3), ortho_scale=.5)
+material = new_material("M", obj)
+frames = [0, 1, 7, 24, 1001]
+for frame in frames:
+    pixels = np.ones((8, 8, 4), np.float32)
+    pixels[..., :3] = (1 + frame / 100, -frame / 1000, 2 / (2 + frame))
+    write_image(os.path.join(ARGUMENTS, f"Plane_tension.{frame:04d}.exr"), pixels)
+bpy.ops.ltmd.setup(object_name="Plane")
+bpy.ops.wm.save_as_mainfile(filepath=os.path.join(ARGUMENTS, "scene.blend"))
+first = os.path.join(ARGUMENTS, "Plane_tension.0000.exr")
+source.switch_to_texture(obj, material, {1001: {"path": first, "frames": frames}})
+# Look at the tension itself.
+tree = material.node_tree
+socket = surface.lobe(material).inputs["Tension"].links[0].from_socket
+emission = tree.nodes.new("ShaderNodeEmission")
+tree.links.new(socket, emission.inputs["Color"])
+tree.links.new(emission.outputs[0], tree.get_output_node("CYCLES").inputs["Surface"])
+scene.frame_end = 2000
+picture = next(n for n in tree.nodes if n.type == "TEX_IMAGE")
+stills = [render(frame)[2, 2, :3] for frame in frames]
+animated = [p[2, 2, :3] for p in render(animation_frames=frames)]
+missing = render(12)[2, 2, :3]
+bpy.ops.wm.save_mainfile()
+bpy.ops.wm.open_mainfile(filepath=bpy.data.filepath)
+reloaded = [render(frame)[2, 2, :3] for frame in frames]
+picture = next(n for n in bpy.data.materials["M"].node_tree.nodes if n.type == "TEX_IMAGE")
+report(expected=[(1 + f / 100, -f / 1000, 2 / (2 + f)) for f in frames], stills=stills,
+       animated=animated, reloaded=reloaded, missing=missing, path=picture.image.filepath,
+       data=picture.image.colorspace_settings.is_data, images=len(bpy.data.images))
+""",
+        arguments=str(tmp_path),
+    )
+    for kind in ("stills", "animated", "reloaded"):
+        assert np.abs(np.array(result[kind]) - result["expected"]).max() < 1e-5, result[kind]
+    assert np.allclose(result["missing"], (1, 0, 1), atol=1e-6)
+    assert result["path"] == "//Plane_tension.0000.exr"
+    assert result["data"]
+
+
+RIGS = (
+    PRELUDE
+    + """
+def sphere(name="Ball"):
+    bpy.ops.mesh.primitive_uv_sphere_add(segments=12, ring_count=8)
+    obj = bpy.context.object
+    obj.name = name
+    return obj
+
+MATRIX = np.array([[1.5, .4, 0], [0, .7, 0], [0, .2, 1.2]])
+
+def bones(obj):
+    # One bone for all vertices: an affine pose is exact on every facet.
+    data = bpy.data.armatures.new("Rig")
+    rig = link(bpy.data.objects.new("Rig", data))
+    bpy.context.view_layer.objects.active = rig
+    bpy.ops.object.mode_set(mode="EDIT")
+    bone = data.edit_bones.new("All")
+    bone.head, bone.tail = (0, 0, 0), (0, 1, 0)
+    bpy.ops.object.mode_set(mode="OBJECT")
+    obj.vertex_groups.new(name="All").add(range(len(obj.data.vertices)), 1, "REPLACE")
+    modifier = obj.modifiers.new("Armature", "ARMATURE")
+    modifier.object = rig
+    def pose(on):
+        rig.pose.bones["All"].scale = (1.5, .7, 1.2) if on else (1, 1, 1)
+    return pose
+
+def keys(obj):
+    obj.shape_key_add(name="Basis")
+    key = obj.shape_key_add(name="Deformed")
+    for point in key.data:
+        point.co = MATRIX @ np.array(point.co)
+    key.value = 0
+    def pose(on):
+        key.value = 1.0 if on else 0.0
+    return pose
+
+def subsurf(obj):
+    modifier = obj.modifiers.new("Subdivision", "SUBSURF")
+    modifier.levels = modifier.render_levels = 2
+
+def mirror(obj):
+    obj.modifiers.new("Mirror", "MIRROR").use_axis = (False, True, False)
+    for vertex in obj.data.vertices:
+        vertex.co.y += 1.5
+
+def simple(obj):
+    obj.modifiers.new("Simple", "SUBSURF").subdivision_type = "SIMPLE"
+
+def solidify(obj):
+    obj.modifiers.new("Solidify", "SOLIDIFY").thickness = .1
+
+cycles(48, 48)
+camera((3, -6, 4), ortho_scale=6)
+world = bpy.data.worlds.new("World")
+out = {}
+for name, parts, scale in (
+    ("keys", (keys,), False), ("armature", (bones,), True), ("subsurf, keys", (subsurf, keys), False),
+    ("armature, subsurf", (bones, subsurf), True), ("subsurf, armature", (subsurf, bones), True),
+    ("mirror, armature", (mirror, bones), True), ("mirror, subsurf, armature", (mirror, subsurf, bones), True),
+    ("simple subdivision, armature", (simple, bones), True), ("solidify, armature", (solidify, bones), True),
+):
+    obj = sphere()
+    for part in parts:
+        pose = part(obj) or (pose if "pose" in dir() else None)
+    material = new_material("M", obj)
+    bpy.ops.ltmd.setup(object_name=obj.name)
+    tree = material.node_tree
+    socket = surface.lobe(material).inputs["Tension"].links[0].from_socket
+    emission = tree.nodes.new("ShaderNodeEmission")
+    tree.links.new(socket, emission.inputs["Color"])
+    tree.links.new(emission.outputs[0], tree.get_output_node("CYCLES").inputs["Surface"])
+    pose(False)
+    at_rest = render()
+    hit = at_rest[..., 0] > 0
+    pose(True)
+    posed = render()
+    there = posed[..., 0] > 0
+    t = posed[there][:, :3].astype(float)
+    # Squared stretches lie between those of the whole map, and their extremes come near.
+    c = t[:, 0] ** 2, t[:, 0] * t[:, 1], t[:, 1] ** 2 + t[:, 2] ** 2
+    mean, dev = (c[0] + c[2]) / 2, np.hypot((c[0] - c[2]) / 2, c[1])
+    limits = np.linalg.svd(np.diag((1.5, .7, 1.2)) if scale else MATRIX, compute_uv=False)
+    out[name] = dict(hit=int(hit.sum()), rest=float(np.abs(at_rest[hit][:, :3] - (1, 0, 1)).max()),
+                     largest=float(np.sqrt(mean + dev).max()), smallest=float(np.sqrt(mean - dev).min()),
+                     limits=[limits[0], limits[-1]], generated=source.needs_generated(obj))
+    for item in list(bpy.data.objects):
+        if item.type in ("MESH", "ARMATURE"):
+            bpy.data.objects.remove(item)
+    bpy.data.materials.remove(material)
+report(out=out)
+"""
+)
+
+
+def test_rigs_are_at_rest_at_rest_and_follow_the_pose():
+    result = run(RIGS)
+    for name, entry in result["out"].items():
+        print(f"{name}: at rest off by {entry['rest']:.1e}; stretch {entry['smallest']:.4f} to "
+              f"{entry['largest']:.4f}, limits {entry['limits'][1]:.4f} to {entry['limits'][0]:.4f}")
+    for name, entry in result["out"].items():
+        assert entry["hit"] > 150, (name, entry)
+        assert entry["rest"] < 5e-5, (name, entry)
+        high, low = entry["limits"]
+        assert low * 0.999 < entry["smallest"] < low * 1.1, (name, entry)
+        assert high * 0.9 < entry["largest"] < high * 1.001, (name, entry)
+        assert entry["generated"] == any(
+            word in name for word in ("subsurf", "simple", "solidify")
+        ), name
+
+
+def test_without_the_library_the_add_on_registers_and_says_what_is_needed():
+    result = run(
+        """
+sys.modules["ltmd"] = None  # as if no wheel fitted this Python
+load_addon()
+from blender_addon import library, panel
+
+class Layout:
+    '''Takes the calls of a panel's draw() and keeps the words.'''
+    def __init__(self, words):
+        self.words = words
+    def _same(self, *args, **kwargs):
+        return Layout(self.words)
+    row = column = split = box = _same
+    def label(self, text="", icon="NONE"):
+        self.words.append(text)
+    def prop(self, data, name, text=None, **kwargs):
+        self.words.append(text or data.bl_rna.properties[name].name)
+    def prop_search(self, data, name, *args, **kwargs):
+        self.words.append(data.bl_rna.properties[name].name)
+    def operator(self, name, text=None, **kwargs):
+        self.words.append(text or name)
+        return Layout([])
+
+obj = mesh_object("Plane", [(-1, -1, 0), (1, -1, 0), (1, 1, 0)], [(0, 1, 2)])
+words = []
+panel.draw(Layout(words), bpy.context)
+panel.draw_bake(Layout(words), bpy.context)
+before = " ".join(words)
+bpy.ops.ltmd.setup(object_name="Plane")
+words = []
+panel.draw(Layout(words), bpy.context)
+import blender_addon
+blender_addon.unregister()
+blender_addon.register()
+report(problem=library.problem(), before=before, after=" ".join(words))
+""",
+        addon=False,
+    )
+    assert "Python" in result["problem"] and "ltmd library" in result["problem"]
+    assert "Not set up" in result["before"] and "The render engine is not Cycles" in result["before"]
+    assert "ltmd library" in result["before"] and "Output Folder" in result["before"]
+    assert "Renders on the CPU with Open Shading Language" in result["after"]
+    assert "Live:" in result["after"] and "Roughness" in result["after"]
