@@ -125,12 +125,12 @@ void gather(const TexelCoverage& coverage, std::span<const float> values, bool f
 void gather_any(const TexelCoverage& coverage, std::span<const float> values, bool flat,
                 int channels, std::span<const float> background, int out_channels,
                 std::span<float> out) {
-    if (channels == 3 && out_channels == 4)
-        gather<3, 4>(coverage, values, flat, channels, background, out_channels, out);
-    else if (channels == 4 && out_channels == 4)
-        gather<4, 4>(coverage, values, flat, channels, background, out_channels, out);
-    else
-        gather<0, 0>(coverage, values, flat, channels, background, out_channels, out);
+    const auto work = channels == 3 && out_channels == 4   ? gather<3, 4>
+                      : channels == 3 && out_channels == 3 ? gather<3, 3>
+                      : channels == 4 && out_channels == 4 ? gather<4, 4>
+                      : channels == 1 && out_channels == 1 ? gather<1, 1>
+                                                           : gather<0, 0>;
+    work(coverage, values, flat, channels, background, out_channels, out);
 }
 
 }  // namespace

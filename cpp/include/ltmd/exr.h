@@ -11,13 +11,18 @@
 
 /// 32-bit float OpenEXR files with metadata.
 ///
-/// Keys of this project start with `ltmd:`; `ltmd:convention` is the version of what the numbers mean.
+/// Keys of this project start with `ltmd:`; `ltmd:convention` is the version of what the numbers
+/// mean. Paths are UTF-8.
 namespace ltmd::inline v0 {
 
 /// The highest `ltmd:convention` that this library reads, and the one it writes.
 inline constexpr int convention = 1;
 
-enum class Compression { none, zips, zip };
+enum class Compression {
+    none,
+    zips,  ///< zip of single rows.
+    zip,   ///< zip of 16 rows.
+};
 
 using Metadata = std::map<std::string, std::string>;
 
@@ -27,14 +32,17 @@ struct ExrImage {
     std::vector<float> pixels;          ///< [height * width * channels], row 0 = top.
 };
 
-/// Writes `pixels` ([height * width * channels.size()], row 0 = top) as 32-bit float. The file appears at `path` only when it is
-/// complete: it is written beside it under a temporary name and renamed. Throws FileError (the old file, if any, is unharmed and the temporary
-/// one removed) and InvalidInput (sizes, no or repeated channel names, empty metadata keys).
-LTMD_API void write_exr(const std::string& path, std::span<const float> pixels, int width, int height,
-                        std::span<const std::string> channels, Compression compression = Compression::zip,
-                        const Metadata& metadata = {});
+/// Writes `pixels` ([height * width * channels.size()], row 0 = top) as 32-bit float, as they are:
+/// also values that are not finite. The file appears at `path` only when it is complete: it is
+/// written beside it under a temporary name (`.ltmd-*.tmp`) and renamed. Throws FileError (the old
+/// file, if any, is unharmed and the temporary one removed) and InvalidInput (sizes outside 1 to
+/// 65536, no or repeated channel names, metadata keys that are empty or that OpenEXR uses itself).
+LTMD_API void write_exr(const std::string& path, std::span<const float> pixels, int width,
+                        int height, std::span<const std::string> channels,
+                        Compression compression = Compression::zip, const Metadata& metadata = {});
 
-/// Reads all channels as 32-bit float. Throws FileError for an unreadable file or an `ltmd:convention` above ours.
+/// Reads all channels as 32-bit float. Throws FileError for a file that is missing, damaged or
+/// incomplete, and for an `ltmd:convention` above ours.
 LTMD_API ExrImage read_exr(const std::string& path);
 
 /// The string attributes of a file's header; numbers as text. Throws as read_exr.

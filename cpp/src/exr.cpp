@@ -1,0 +1,327 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "ltmd/exr.h"
+
+#include <ImfChannelList.h>
+#include <ImfDoubleAttribute.h>
+#include <ImfFloatAttribute.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfIO.h>
+#include <ImfInputFile.h>
+#include <ImfIntAttribute.h>
+#include <ImfOutputFile.h>
+#include <ImfStringAttribute.h>
+#include <ImfThreading.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <charconv>
+#include <cstdint>
+#include <cstdio>
+#include <fstream>
+#include <mutex>
+#include <random>
+#include <set>
+#include <sstream>
+#include <system_error>
+
+#include "ltmd/errors.h"
+#include "ltmd/threads.h"
+#include "utf8_path.h"
+
+namespace ltmd::inline v0 {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int max_size = 65536;
+constexpr std::size_t max_name_length = 255;  // of OpenEXR's file format
+constexpr const char* convention_key = "ltmd:convention";
+
+[[noreturn]] void fail(const std::string& path, const std::string& what) {
+    throw FileError(path + ": " + what);
+}
+
+std::string error_text(int error) { return std::generic_category().message(error); }
+
+/// The worker threads that a file may keep busy. OpenEXR's pool (our own copy of it) only grows:
+/// shrinking it waits for others.
+int file_threads() {
+    const int count = thread_count();
+    if (count < 2) return 0;
+    static std::mutex mutex;
+    std::lock_guard lock(mutex);
+    if (Imf::globalThreadCount() < count) Imf::setGlobalThreadCount(count);
+    return count;
+}
+
+/// A file under a temporary name in the folder of its final path; removed unless it is published.
+class TemporaryFile {
+public:
+    explicit TemporaryFile(const std::string& path) : text_(path), path_(utf8_path(path)) {
+        const fs::path folder = path_.has_parent_path() ? path_.parent_path() : fs::path(".");
+        std::error_code error;
+        if (!path_.has_filename()) fail(text_, "is no file name");
+        if (!fs::is_directory(folder, error))
+            fail(text_, "the folder " + utf8_text(folder) +
+                            (fs::exists(folder, error) ? " is a file: give another path"
+                                                       : " does not exist: create it first"));
+        if (fs::is_directory(path_, error)) fail(text_, "is a folder: give another path");
+        temporary_ = folder / temporary_name();
+        errno = 0;
+        stream_.open(temporary_, std::ios::binary | std::ios::trunc);
+        if (!stream_)
+            fail(text_, "cannot be created (" + error_text(errno) +
+                            "): check that its folder may be written to");
+    }
+    ~TemporaryFile() {
+        if (published_) return;
+        stream_.close();
+        std::error_code ignored;
+        fs::remove(temporary_, ignored);
+    }
+    TemporaryFile(const TemporaryFile&) = delete;
+    TemporaryFile& operator=(const TemporaryFile&) = delete;
+
+    std::ofstream& stream() { return stream_; }
+
+    /// Remembers the first failure's reason.
+    void check() {
+        if (!stream_ && error_ == 0) error_ = errno != 0 ? errno : EIO;
+    }
+
+    void publish() {
+        errno = 0;
+        stream_.close();
+        check();
+        if (error_ != 0)
+            fail(text_, "could not be written (" + error_text(error_) +
+                            "): make room or choose another folder, then write it again");
+        std::error_code error;
+        fs::rename(temporary_, path_, error);
+        if (error)
+            fail(text_, "could not be put in place (" + error.message() +
+                            "): check that no other program holds the old file and that the folder "
+                            "may be written to");
+        published_ = true;
+    }
+
+private:
+    static std::string temporary_name() {
+        std::random_device random;
+        char name[40];
+        std::snprintf(name, sizeof name, ".ltmd-%08x%08x.tmp", unsigned{random()},
+                      unsigned{random()});
+        return name;
+    }
+
+    std::string text_;
+    fs::path path_, temporary_;
+    std::ofstream stream_;
+    int error_ = 0;
+    bool published_ = false;
+};
+
+/// OpenEXR swallows errors in its destructor, where the last bytes are written: this stream keeps
+/// the first one, never throws, and is asked at the end.
+class FileStream : public Imf::OStream {
+public:
+    FileStream(TemporaryFile& file, const std::string& path) : OStream(path.c_str()), file_(file) {}
+
+    void write(const char data[], int size) override {
+        errno = 0;
+        file_.stream().write(data, size);
+        file_.check();
+        position_ += static_cast<std::uint64_t>(size);
+    }
+    std::uint64_t tellp() override { return position_; }
+    void seekp(std::uint64_t position) override {
+        errno = 0;
+        file_.stream().seekp(static_cast<std::streamoff>(position));
+        file_.check();
+        position_ = position;
+    }
+
+private:
+    TemporaryFile& file_;
+    std::uint64_t position_ = 0;  // the stream's own is unknown after a failure
+};
+
+Imf::Compression imf_compression(Compression compression) {
+    switch (compression) {
+        case Compression::none:
+            return Imf::NO_COMPRESSION;
+        case Compression::zips:
+            return Imf::ZIPS_COMPRESSION;
+        case Compression::zip:
+            return Imf::ZIP_COMPRESSION;
+    }
+    throw InvalidInput("unknown compression");
+}
+
+void validate_name(const char* what, const std::string& name) {
+    if (name.empty() || name.size() > max_name_length || name.find('\0') != std::string::npos)
+        throw InvalidInput(std::string(what) + " '" + name + "' must have 1 to " +
+                           std::to_string(max_name_length) + " bytes, none of them zero");
+}
+
+Imf::Header make_header(int width, int height, std::span<const std::string> channels,
+                        Compression compression, const Metadata& metadata) {
+    Imf::Header header(width, height, 1, Imath::V2f(0, 0), 1, Imf::INCREASING_Y,
+                       imf_compression(compression));
+    std::set<std::string> names;
+    for (const std::string& channel : channels) {
+        validate_name("channel name", channel);
+        if (!names.insert(channel).second)
+            throw InvalidInput("channel name '" + channel + "' is repeated");
+        header.channels().insert(channel, Imf::Channel(Imf::FLOAT));
+    }
+    // The attributes that every file has, and those that OpenEXR reads in files of several parts.
+    static const std::set<std::string> reserved = {"name",  "type", "version",  "chunkCount",
+                                                   "tiles", "view", "multiView"};
+    for (const auto& [key, value] : metadata) {
+        validate_name("metadata key", key);
+        if (reserved.contains(key) || header.find(key) != header.end())
+            throw InvalidInput("metadata key '" + key +
+                               "' is one of OpenEXR's own: choose another");
+        header.insert(key, Imf::StringAttribute(value));
+    }
+    return header;
+}
+
+void require_known_convention(const std::string& path, const Imf::Header& header) {
+    const auto* attribute = header.findTypedAttribute<Imf::StringAttribute>(convention_key);
+    if (!attribute) return;
+    const std::string& text = attribute->value();
+    int number = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    if (error != std::errc() || end != text.data() + text.size() || number < 1)
+        fail(path, std::string(convention_key) + " '" + text + "' is not a whole number from 1");
+    if (number > convention)
+        fail(path, "was written with convention " + std::to_string(number) +
+                       "; this version reads up to " + std::to_string(convention) +
+                       ": update LTMD");
+}
+
+/// Opens the file and calls `use` with it; whatever OpenEXR throws becomes a FileError.
+template <class Use>
+auto with_input(const std::string& path, int threads, const Use& use) {
+    std::error_code error;
+    if (!fs::exists(utf8_path(path), error)) fail(path, "does not exist");
+    if (fs::is_directory(utf8_path(path), error)) fail(path, "is a folder, not a file");
+    try {
+        Imf::InputFile file(path.c_str(), threads);
+        require_known_convention(path, file.header());
+        return use(file);
+    } catch (const FileError&) {
+        throw;
+    } catch (const std::exception& exception) {
+        fail(path, std::string("is no OpenEXR file, or is damaged or cut short (") +
+                       exception.what() + "): write it again");
+    }
+}
+
+std::array<int, 2> size_of(const Imf::Header& header) {
+    const Imath::Box2i window = header.dataWindow();
+    return {window.max.x - window.min.x + 1, window.max.y - window.min.y + 1};
+}
+
+template <class Number>
+std::string number_text(Number number) {
+    std::ostringstream text;
+    text.imbue(std::locale::classic());
+    text.precision(std::numeric_limits<Number>::max_digits10);
+    text << number;
+    return text.str();
+}
+
+}  // namespace
+
+void write_exr(const std::string& path, std::span<const float> pixels, int width, int height,
+               std::span<const std::string> channels, Compression compression,
+               const Metadata& metadata) {
+    if (width < 1 || height < 1 || width > max_size || height > max_size)
+        throw InvalidInput("picture size " + std::to_string(width) + " x " +
+                           std::to_string(height) + " is outside 1 to " + std::to_string(max_size) +
+                           " pixels a side");
+    if (channels.empty()) throw InvalidInput("a picture needs at least one channel name");
+    const std::size_t row = static_cast<std::size_t>(width) * channels.size();
+    if (pixels.size() != row * static_cast<std::size_t>(height))
+        throw InvalidInput(std::to_string(pixels.size()) + " pixel values; expected " +
+                           std::to_string(height) + " x " + std::to_string(width) + " x " +
+                           std::to_string(channels.size()));
+    const Imf::Header header = make_header(width, height, channels, compression, metadata);
+
+    Imf::FrameBuffer buffer;
+    for (std::size_t k = 0; k < channels.size(); ++k) {
+        // OpenEXR's slices are not const, but writing only reads them.
+        auto* first = reinterpret_cast<char*>(const_cast<float*>(pixels.data() + k));
+        buffer.insert(channels[k], Imf::Slice(Imf::FLOAT, first, channels.size() * sizeof(float),
+                                              row * sizeof(float)));
+    }
+    TemporaryFile temporary(path);
+    try {
+        FileStream stream(temporary, path);
+        Imf::OutputFile file(stream, header, compression == Compression::none ? 0 : file_threads());
+        file.setFrameBuffer(buffer);
+        file.writePixels(height);
+    } catch (const std::exception& exception) {
+        fail(path, std::string("could not be written (") + exception.what() + ")");
+    }
+    temporary.publish();
+}
+
+ExrImage read_exr(const std::string& path) {
+    return with_input(path, file_threads(), [&](Imf::InputFile& file) {
+        ExrImage image;
+        const auto [width, height] = size_of(file.header());
+        image.width = width;
+        image.height = height;
+        const Imf::ChannelList& channels = file.header().channels();
+        for (const char* name : {"R", "G", "B", "A"})
+            if (channels.findChannel(name)) image.channels.emplace_back(name);
+        for (auto c = channels.begin(); c != channels.end(); ++c)
+            if (std::find(image.channels.begin(), image.channels.end(), c.name()) ==
+                image.channels.end())
+                image.channels.emplace_back(c.name());
+
+        const std::size_t count = image.channels.size();
+        image.pixels.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) *
+                            count);
+        const Imath::Box2i window = file.header().dataWindow();
+        Imf::FrameBuffer buffer;
+        for (std::size_t k = 0; k < count; ++k)
+            buffer.insert(
+                image.channels[k],
+                Imf::Slice::Make(Imf::FLOAT, image.pixels.data() + k, window, count * sizeof(float),
+                                 static_cast<std::size_t>(width) * count * sizeof(float)));
+        file.setFrameBuffer(buffer);
+        file.readPixels(window.min.y, window.max.y);
+        return image;
+    });
+}
+
+Metadata exr_metadata(const std::string& path) {
+    return with_input(path, 0, [](const Imf::InputFile& file) {
+        Metadata metadata;
+        const Imf::Header& header = file.header();
+        for (auto a = header.begin(); a != header.end(); ++a) {
+            const Imf::Attribute& attribute = a.attribute();
+            if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&attribute))
+                metadata[a.name()] = text->value();
+            else if (const auto* integer = dynamic_cast<const Imf::IntAttribute*>(&attribute))
+                metadata[a.name()] = number_text(integer->value());
+            else if (const auto* single = dynamic_cast<const Imf::FloatAttribute*>(&attribute))
+                metadata[a.name()] = number_text(single->value());
+            else if (const auto* number = dynamic_cast<const Imf::DoubleAttribute*>(&attribute))
+                metadata[a.name()] = number_text(number->value());
+        }
+        return metadata;
+    });
+}
+
+std::array<int, 2> exr_size(const std::string& path) {
+    return with_input(path, 0, [](const Imf::InputFile& file) { return size_of(file.header()); });
+}
+
+}  // namespace ltmd::inline v0
