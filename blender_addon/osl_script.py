@@ -6,13 +6,11 @@ source tree.
 """
 
 import importlib.util
-import re
 from pathlib import Path
 
 import bpy
 
-_INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]+"([^"]+)"[^\n]*\n?', re.MULTILINE)
-_ONCE = re.compile(r"^[ \t]*#[ \t]*pragma[ \t]+once[^\n]*\n?", re.MULTILINE)
+from .osl_inline import inlined
 
 
 def folder():
@@ -20,24 +18,6 @@ def folder():
     here = Path(__file__).resolve().parent
     shipped = here / "osl"
     return shipped if shipped.is_dir() else here.parent / "osl"
-
-
-def inlined(path, include_folder=None, _seen=None):
-    """Text of a shader with our own includes put in, each once; the system's stay includes."""
-    path = Path(path)
-    include_folder = Path(include_folder) if include_folder else path.parent / "include"
-    seen = set() if _seen is None else _seen
-
-    def put_in(match):
-        included = include_folder / match.group(1)
-        if not included.is_file():
-            return match.group(0)
-        if included in seen:
-            return ""
-        seen.add(included)
-        return inlined(included, include_folder, seen)
-
-    return _INCLUDE.sub(put_in, _ONCE.sub("", path.read_text(encoding="utf-8")))
 
 
 def fill(node, name, scene=None):
