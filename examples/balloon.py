@@ -18,7 +18,16 @@ COLUMNS = [
 ]
 # Outline from the top to the lip: radius, height.
 OUTLINE = np.array(
-    [(0, 1), (0.38, 0.925), (0.71, 0.71), (0.93, 0.38), (1, 0), (0.955, -0.36), (0.82, -0.68), (0.61, -0.95)]
+    [
+        (0, 1),
+        (0.38, 0.925),
+        (0.71, 0.71),
+        (0.93, 0.38),
+        (1, 0),
+        (0.955, -0.36),
+        (0.82, -0.68),
+        (0.61, -0.95),
+    ]
     + [(0.40, -1.16), (0.235, -1.32), (0.15, -1.43), (0.125, -1.52), (0.165, -1.60)]
 )
 
@@ -32,12 +41,18 @@ def smooth_outline(count):
     for i in range(1, len(points) - 2):
         level, t = points[i - 1 : i + 3], knots[i - 1 : i + 3]
         s = np.linspace(t[1], t[2], 200, endpoint=False)[:, None]
-        level = [level[k] + (s - t[k]) / (t[k + 1] - t[k]) * (level[k + 1] - level[k]) for k in range(3)]
-        level = [level[k] + (s - t[k]) / (t[k + 2] - t[k]) * (level[k + 1] - level[k]) for k in range(2)]
+        level = [
+            level[k] + (s - t[k]) / (t[k + 1] - t[k]) * (level[k + 1] - level[k]) for k in range(3)
+        ]
+        level = [
+            level[k] + (s - t[k]) / (t[k + 2] - t[k]) * (level[k + 1] - level[k]) for k in range(2)
+        ]
         curve.append(level[0] + (s - t[1]) / (t[2] - t[1]) * (level[1] - level[0]))
     curve = np.vstack([*curve, OUTLINE[-1:]])
     length = np.r_[0, np.cumsum(np.linalg.norm(np.diff(curve, axis=0), axis=1))]
-    return np.stack([np.interp(np.linspace(0, length[-1], count), length, c) for c in curve.T], axis=1)
+    return np.stack(
+        [np.interp(np.linspace(0, length[-1], count), length, c) for c in curve.T], axis=1
+    )
 
 
 def balloon_mesh():

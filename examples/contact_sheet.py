@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Composes the cells of an example into one captioned picture: contact_sheet.py SHEET.json OUT.png"""
+"""Composes the cells of an example into one picture: contact_sheet.py SHEET.json OUT.png"""
 
 import json
 import sys
@@ -14,7 +14,9 @@ FONTS = Path(matplotlib.get_data_path()) / "fonts" / "ttf"
 
 
 def font(size, bold=False):
-    return ImageFont.truetype(str(FONTS / ("DejaVuSans-Bold.ttf" if bold else "DejaVuSans.ttf")), size)
+    return ImageFont.truetype(
+        str(FONTS / ("DejaVuSans-Bold.ttf" if bold else "DejaVuSans.ttf")), size
+    )
 
 
 def colour_at(ramp, x):
@@ -29,10 +31,8 @@ def colour_at(ramp, x):
     place = x * (len(ramp) - 1)
     left = min(int(place), len(ramp) - 2)
     part = place - left
-    pairs = zip(ramp[left], ramp[left + 1])
-    return tuple(
-        round(255 * encode(decode(a) * (1 - part) + decode(b) * part)) for a, b in pairs
-    )
+    pairs = zip(ramp[left], ramp[left + 1], strict=True)
+    return tuple(round(255 * encode(decode(a) * (1 - part) + decode(b) * part)) for a, b in pairs)
 
 
 def compose(sheet):

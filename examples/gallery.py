@@ -13,9 +13,16 @@ import time
 from pathlib import Path
 
 EXTENSION = "bl_ext.user_default.ltmd"
-LARGEST_AREA = 2.0
-# Blue, white, orange: told apart by everyone, and white is "as at rest". sRGB, even steps of log(area).
-RAMP = [(0.10, 0.25, 0.62), (0.36, 0.62, 0.86), (0.93, 0.93, 0.92), (0.97, 0.62, 0.28), (0.72, 0.16, 0.06)]
+LARGEST_AREA = 3.0
+# Blue, white, orange: told apart by everyone, and white is "as at rest". sRGB, in even steps of the
+# logarithm of the area.
+RAMP = [
+    (0.10, 0.25, 0.62),
+    (0.36, 0.62, 0.86),
+    (0.93, 0.93, 0.92),
+    (0.97, 0.62, 0.28),
+    (0.72, 0.16, 0.06),
+]
 _began = time.perf_counter()
 
 
@@ -29,7 +36,7 @@ def start(name):
     parser = argparse.ArgumentParser(prog=f"{name}.py")
     parser.add_argument("--extension", type=Path, required=True, help="the extension's zip")
     parser.add_argument("--out", type=Path, required=True, help="folder for everything made here")
-    parser.add_argument("--samples", type=int, default=192)
+    parser.add_argument("--samples", type=int, default=128)
     parser.add_argument("--scale", type=float, default=1.0, help="size of the cells")
     args = parser.parse_args()
     args.out = args.out.resolve()
@@ -134,7 +141,7 @@ def area_colours(files, first, last, lines=0):
         made = tree.nodes.new(kind)
         for key, value in settings.items():
             setattr(made, key, value)
-        for socket, source in zip(made.inputs, sources):
+        for socket, source in zip(made.inputs, sources, strict=False):
             if isinstance(source, bpy.types.NodeSocket):
                 tree.links.new(source, socket)
             elif source is not None:
@@ -169,7 +176,7 @@ def area_colours(files, first, last, lines=0):
         uv = node("ShaderNodeSeparateXYZ", node("ShaderNodeTexCoord").outputs["UV"]).outputs
         near = [
             maths("PINGPONG", maths("MULTIPLY", axis, float(count)), 0.5)
-            for axis, count in zip(uv, lines)
+            for axis, count in zip(uv, lines, strict=False)
         ]
         line = maths("LESS_THAN", maths("MINIMUM", *near), 0.03)
         light = maths("MULTIPLY", light, maths("MULTIPLY_ADD", line, -0.3, 1.0))
@@ -208,7 +215,11 @@ def bake(obj, args, first, last, size):
 
 def set_strength(material, value):
     """How much of the deformation the highlights follow: 0 is the material without LTMD."""
-    lobe = next(node for node in material.node_tree.nodes if "Strength" in node.inputs and node.type == "GROUP")
+    lobe = next(
+        node
+        for node in material.node_tree.nodes
+        if "Strength" in node.inputs and node.type == "GROUP"
+    )
     lobe.inputs["Strength"].default_value = value
 
 
@@ -253,19 +264,28 @@ def three_rows(obj, args, title, columns, files, first, last, lines=0):
     set_strength(material, 0)
     rows = [("Plain material", "same roughness\neverywhere", render_row(args, "plain", frames))]
     set_strength(material, 1)
-    rows.append(("With LTMD", "stretched: glossier\nsqueezed: duller", render_row(args, "ltmd", frames)))
+    rows.append(
+        ("With LTMD", "stretched: glossier\nsqueezed: duller", render_row(args, "ltmd", frames))
+    )
     bpy.ops.wm.save_mainfile()
 
     obj.active_material = area_colours(files, first, last, lines)
     scene.cycles.samples = 16
-    rows.append(("Measured stretch", "baked to float EXR,\none per frame", render_row(args, "measured", frames)))
+    rows.append(
+        (
+            "Measured stretch",
+            "baked to float EXR,\none per frame",
+            render_row(args, "measured", frames),
+        )
+    )
     sheet = {
         "title": title,
         "columns": [
-            [caption, "stretch {:.2f} – {:.2f}".format(*ranges[frame])] for frame, caption in columns
+            [caption, "stretched to {:.0%} – {:.0%}".format(*ranges[frame])]
+            for frame, caption in columns
         ],
         "rows": rows,
         "ramp": RAMP,
-        "legend": ["half the area", "as at rest", "twice the area"],
+        "legend": ["a third of the area", "as at rest", "three times the area"],
     }
     (args.out / "sheet.json").write_text(json.dumps(sheet, indent=1))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Suzanne pulls faces: shape keys, a stretching and bending armature, then a Subdivision Surface."""
+"""Suzanne pulls faces: shape keys, an armature that stretches, then a Subdivision Surface."""
 
 import math
 
