@@ -136,12 +136,9 @@ class Bake:
             problems.append(f"Unknown pass {unknown[0]}: there is {', '.join(PASSES)}")
         if not settings.objects:
             problems.append("There is no object to bake")
-        frozen = simulation.frozen_drivers()
+        frozen = _frozen_problem()
         if frozen:
-            problems.append(
-                f"Python drivers are switched off, the first is {frozen[0]}: the rig does not move "
-                "as it should. Allow the file to run scripts (--enable-autoexec) and bake again"
-            )
+            problems.append(frozen)
         names = [(obj.name, naming_library(obj)) for obj in bpy.data.objects]
         for obj in settings.objects:
             problem = self._object_problem(scene, view_layer, obj)
@@ -230,8 +227,12 @@ class Bake:
                 obj = self._find(bpy.data.objects, target.uid)
                 if obj.mode == "EDIT":
                     obj.update_from_editmode()
-                if target.spec.mode != "frame" or self.settings.resume:
+                if target.spec.mode != "frame":
                     requests[target.uid] = (obj, target.spec, target.uv_map)
+                if self.settings.resume:
+                    # Which tiles there are must be known before the first frame is.
+                    spec = rest_state.Spec()
+                    requests[target.uid, "uv"] = (obj, spec, target.uv_map)
             try:
                 found = rest_state.candidates(scene, requests) if requests else {}
             except rest_state.RestError as error:
@@ -239,7 +240,7 @@ class Bake:
             for target in self.targets:
                 target.choices = found.get(target.uid, [])
             if self.settings.resume:
-                self._skip_finished()
+                self._skip_finished({t.uid: found[t.uid, "uv"] for t in self.targets})
         except BaseException as error:
             self._fail(error)
             raise
@@ -254,9 +255,10 @@ class Bake:
                 f'The folder "{self.folder}" cannot be written: {error.strerror or error}'
             ) from None
 
-    def _skip_finished(self):
+    def _skip_finished(self, layouts):
         for target in self.targets:
-            mesh = next((arrays for arrays in target.choices if arrays.uv is not None), None)
+            layout = layouts[target.uid]
+            mesh = next((arrays for arrays in layout if arrays.uv is not None), None)
             if mesh is None:
                 continue
             target.uv_map = target.uv_map or mesh.uv_map
@@ -335,6 +337,10 @@ class Bake:
         )
 
     def _visit(self, frame, objects):
+        frozen = _frozen_problem()
+        if frozen:
+            # A driver that only the render evaluates.
+            raise Refused(frozen)
         ahead = self._visited < self._ahead
         self._visited += 1
         for target in self.targets:
@@ -533,8 +539,6 @@ class Bake:
             self._fail(raised)
             raise
         self.status = "cancelled" if evaluation.cancelled else "ok"
-        if not evaluation.cancelled and bpy.app.autoexec_fail and simulation.frozen_drivers():
-            self._fail(Refused("Python drivers were blocked while the frames were evaluated"))
 
     def finish(self):
         """Reads the written files back, and if asked turns the materials to them."""
@@ -618,6 +622,16 @@ class Bake:
             "warnings": self.warnings,
             "problems": self.problems,
         }
+
+
+def _frozen_problem():
+    frozen = simulation.frozen_driver()
+    if frozen is None:
+        return None
+    return (
+        f"The Python driver {frozen} may not run in this file, so the rig does not move as it "
+        "should: allow the file to run scripts (--enable-autoexec) and bake again"
+    )
 
 
 def _tile_exists(tile):

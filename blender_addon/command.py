@@ -196,7 +196,7 @@ def _open_scene(options):
         return
     if path is not None and not os.path.isfile(path):
         raise bake.Refused(f'There is no file "{path}"')
-    if path is None and options.enable_autoexec and simulation.frozen_drivers():
+    if path is None and options.enable_autoexec and simulation.frozen_driver():
         # The file was loaded before this command could allow its scripts.
         path = bpy.data.filepath
     if path is not None:

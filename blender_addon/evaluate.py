@@ -45,7 +45,8 @@ class Evaluation:
                 if engine.test_break() or (self.stop is not None and self.stop()):
                     self.cancelled = True
                     return
-                engine.update_stats("LTMD", f"Frame {frame} ({done + 1} of {len(self.frames)})")
+                if not bpy.app.background:
+                    engine.update_stats("LTMD", f"Frame {frame} ({done + 1} of {len(self.frames)})")
                 engine.frame_set(frame, 0.0)
                 self.visit(frame, self._objects(depsgraph))
                 engine.update_progress((done + 1) / len(self.frames))

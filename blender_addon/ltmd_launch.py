@@ -31,16 +31,10 @@ def _package():
 
 
 def main():
-    import bpy
-
-    if bpy.app.module:
-        arguments = sys.argv[1:]
-        if arguments[:1] == ["--"]:
-            arguments = arguments[1:]
-    else:
-        arguments = sys.argv[sys.argv.index("--") + 1 :] if "--" in sys.argv else []
+    # Blender's own arguments end at "--"; a plain Python has none of them.
+    end = sys.argv.index("--") if "--" in sys.argv else 0
     command = importlib.import_module(f"{_package().__name__}.command")
-    return command.main(arguments)
+    return command.main(sys.argv[end + 1 :])
 
 
 if __name__ == "__main__":

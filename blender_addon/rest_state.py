@@ -133,6 +133,10 @@ def candidates(scene, requests):
         for key, (obj, spec, uv_map) in requests.items():
             for kept in _choices(obj):
                 copies.append((key, kept, uv_map, _rest_copy(work, obj, spec, kept)))
+            if spec.mode == "object":
+                # A rest object whose modifiers are its own, or applied.
+                shape = bpy.data.objects[spec.object]
+                copies.append((key, (), uv_map, _link(work, shape.copy())))
         found = {key: [] for key in requests}
 
         def read(_frame, objects):
@@ -142,6 +146,9 @@ def candidates(scene, requests):
                     raise RestError(f'The rest state of "{requests[key][0].name}" is not evaluated')
                 arrays = read_mesh(evaluated.data, uv_map)
                 arrays.kept = kept
+                if requests[key][1].mode == "object":
+                    # The render looks up with the UVs of the baked object.
+                    arrays.uv, arrays.uv_map = None, ""
                 found[key].append(arrays)
 
         evaluation = evaluate.Evaluation(
@@ -220,6 +227,10 @@ def _rest_copy(work, obj, spec, kept):
     for modifier in list(copy.modifiers):
         if modifier.type in DEFORMING or (modifier.type == "NODES" and modifier.name not in kept):
             copy.modifiers.remove(modifier)
+    return _link(work, copy)
+
+
+def _link(work, copy):
     copy.hide_render = False
     copy.hide_viewport = False
     work.collection.objects.link(copy)

@@ -127,11 +127,17 @@ def _objects_of(modifier):
 # --- drivers -------------------------------------------------------------------------------------
 
 
-def frozen_drivers():
-    """Python drivers of shapes and objects that Blender does not run now, as words."""
-    if not (bpy.app.autoexec_fail or bpy.app.autoexec_fail_quiet):
-        return []
-    return python_drivers()
+def frozen_driver():
+    """A Python driver that Blender refused to run, as words, or None.
+
+    Blender runs harmless expressions in any file; only an evaluation shows which it refuses.
+    """
+    message = bpy.app.autoexec_fail_message
+    if not (bpy.app.autoexec_fail or bpy.app.autoexec_fail_quiet) or "Driver" not in message:
+        return None
+    # The message is cut to a fixed length.
+    expression = message.removeprefix("Driver ").strip("'")
+    return next((words for words in python_drivers() if expression in words), message)
 
 
 def python_drivers():
@@ -160,6 +166,9 @@ def python_drivers():
 
 def unkeyed_edits(obj, scene):
     """Animated values of the object, its keys and its armatures that differ from their curves."""
+    if obj.hide_viewport:
+        # Not evaluated now: its values are from some other frame.
+        return []
     owners = [obj, obj.data]
     if obj.data is not None and getattr(obj.data, "shape_keys", None) is not None:
         owners.append(obj.data.shape_keys)
@@ -168,12 +177,13 @@ def unkeyed_edits(obj, scene):
             owners.append(modifier.object)
     if obj.parent is not None:
         owners.append(obj.parent)
-    return [
+    edits = (
         f"{owner.name} {curve.data_path}"
         for owner in dict.fromkeys(owners)
         for curve in _curves(owner)
         if _differs(owner, curve, scene)
-    ]
+    )
+    return list(dict.fromkeys(edits))
 
 
 def _curves(owner):
