@@ -861,8 +861,11 @@ class LTMD_OT_bake(bpy.types.Operator):
 
     def _objects(self, context):
         if self.objects or self.collection:
-            return named_objects(context.scene, [item.name for item in self.objects],
-                                 [self.collection] if self.collection else [])[0]
+            return named_objects(
+                context.scene,
+                [item.name for item in self.objects],
+                [self.collection] if self.collection else [],
+            )[0]
         selected = [obj for obj in context.selected_objects if obj.type == "MESH"]
         if not selected and context.object is not None:
             selected = [context.object]

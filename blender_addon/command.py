@@ -221,7 +221,9 @@ def _verify(options, report, _stop):
     if not os.path.isdir(options.directory):
         raise bake.Refused(f'There is no folder "{options.directory}"')
     found = ltmd.verify(options.directory, options.frames)
-    report["sequences"] = {name: list(map(int, numbers)) for name, numbers in found.sequences.items()}
+    report["sequences"] = {
+        name: list(map(int, numbers)) for name, numbers in found.sequences.items()
+    }
     report["problems"] = list(found.problems)
     if not found.sequences:
         report["problems"].append(f'"{options.directory}" holds no baked files')

@@ -17,7 +17,11 @@ import sys
 def _package():
     """The enabled extension, or the package in the folder of this file, registered."""
     for name, module in list(sys.modules.items()):
-        if name.startswith("bl_ext.") and name.endswith(".ltmd") and f"{name}.command" in sys.modules:
+        if (
+            name.startswith("bl_ext.")
+            and name.endswith(".ltmd")
+            and f"{name}.command" in sys.modules
+        ):
             return module
     folder = os.path.dirname(os.path.abspath(__file__))
     spec = importlib.util.spec_from_file_location(

@@ -52,7 +52,7 @@ def corner_tension(rest, deformed):
 
 
 def texels(rest, corner_values, size, tile=(0, 0)):
-    """(mask, values): the texels whose centre is inside exactly one triangle, and what they hold."""
+    """(mask, values): texels whose centre is inside exactly one triangle, and what they hold."""
     values = np.zeros((size, size, 3))
     hits = np.zeros((size, size), int)
     uv = np.asarray(rest["corner_uv"], float) - tile

@@ -174,7 +174,8 @@ def test_two_objects_share_one_pass_over_the_frames(tmp_path):
         frames = [evaluated(obj, 4) for obj in objects]
         visited = []
         bpy.context.scene.view_layers.new("Second")
-        bpy.app.handlers.frame_change_pre.append(lambda scene, *_: visited.append(scene.frame_current))
+        note = lambda scene, *_: visited.append(scene.frame_current)
+        bpy.app.handlers.frame_change_pre.append(note)
         bpy.context.scene.frame_set(1)
         visited.clear()
         work = bake(objects, [1, 4], ARGUMENTS)
@@ -278,7 +279,8 @@ def test_interrupted_bake_leaves_whole_files_only(tmp_path, kind):
         keyed_shape(obj, lambda p: p + 0.2 * np.sin(9 * p[:, [1, 2, 0]]))
         if kind != "blocked file":
             bake([obj], [3], folder, width=256, height=256)
-        before = open(f"{folder}/Sheet_tension.0003.exr", "rb").read() if kind != "blocked file" else b""
+        older = f"{folder}/Sheet_tension.0003.exr"
+        before = open(older, "rb").read() if kind != "blocked file" else b""
         checks = []
         def stop():
             checks.append(1)
@@ -297,7 +299,7 @@ def test_interrupted_bake_leaves_whole_files_only(tmp_path, kind):
             outcome = f"{type(error).__name__}: {error}"
         if kind == "full disk":
             resource.setrlimit(resource.RLIMIT_FSIZE, (resource.RLIM_INFINITY,) * 2)
-        after = open(f"{folder}/Sheet_tension.0003.exr", "rb").read() if before else b""
+        after = open(older, "rb").read() if before else b""
         scene = bpy.context.scene
         report(outcome=outcome, same=before == after, names=sorted(os.listdir(folder)),
                engine=scene.render.engine)
@@ -310,7 +312,8 @@ def test_interrupted_bake_leaves_whole_files_only(tmp_path, kind):
     if kind == "cancel":
         assert got["outcome"] == "cancelled"
         assert set(got["names"]) <= set(files) and files[2] in got["names"]
-        assert sorted(map(os.path.basename, got["files"])) == [n for n in got["names"] if n != files[2]]
+        written = [name for name in got["names"] if name != files[2]]
+        assert sorted(map(os.path.basename, got["files"])) == written
     elif kind == "blocked file":
         assert got["outcome"].startswith("WriteFailure") and "0003.exr" in got["outcome"]
         assert set(files) <= set(got["names"]) <= {*files, "Sheet_tension.0004.exr"}

@@ -25,7 +25,7 @@ def pure(name):
 
 @pytest.fixture(scope="module")
 def scene(tmp_path_factory):
-    """A saved file: "Sheet" and "Other" in the collection "Skins" with a hidden one, a driven one."""
+    """A saved file: "Sheet", "Other" and "Hidden" in "Skins"; beside it one with a driver."""
     path = tmp_path_factory.mktemp("command") / "scene.blend"
     run(
         """
@@ -52,8 +52,7 @@ def scene(tmp_path_factory):
 def launch(*arguments, **options):
     return subprocess.run(
         [blender_python(), str(LAUNCHER), *map(str, arguments)],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
+        capture_output=True,
         text=True,
         timeout=120,
         **options,
