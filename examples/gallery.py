@@ -215,11 +215,7 @@ def bake(obj, args, first, last, size):
 
 def set_strength(material, value):
     """How much of the deformation the highlights follow: 0 is the material without LTMD."""
-    lobe = next(
-        node
-        for node in material.node_tree.nodes
-        if "Strength" in node.inputs and node.type == "GROUP"
-    )
+    lobe = material.node_tree.nodes["LTMD Glossy"]
     lobe.inputs["Strength"].default_value = value
 
 

@@ -141,8 +141,8 @@ def main():
         target=(0, -0.1, 0.02),
         height=3.6,
         lights=[
-            ((-2.6, -9, 0.6), 900, (0.6, 0.6)),
-            ((-1.5, -3, 9), 900, (0.7, 0.7)),
+            ((-2.6, -9, 0.6), 1100, (0.5, 0.5)),
+            ((-1.5, -3, 9), 1100, (0.7, 0.7)),
             ((7, 3, 0.5), 200, (0.6, 6)),
             ((-7, 3.5, 1), 150, (0.6, 6)),
         ],
@@ -153,7 +153,7 @@ def main():
     # The picture has a finer surface than the viewport; the bake has to measure the one rendered.
     subdivision = obj.modifiers.new("Subdivision", "SUBSURF")
     subdivision.levels, subdivision.render_levels = 1, 3
-    obj.data.materials.append(gallery.paint("Paint", (0.03, 0.2, 0.85), 0.36, metallic=1))
+    obj.data.materials.append(gallery.paint("Paint", (0.03, 0.2, 0.85), 0.42, metallic=1))
     bpy.ops.wm.save_as_mainfile(filepath=str(args.out / "suzanne.blend"))
     files = gallery.bake(obj, args, FIRST, LAST, 1024)
     gallery.three_rows(
