@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ltmd/exr.h"
 
+#if __has_include(<ImfContextInit.h>)  // OpenEXR 3.3
+#include <ImfContextInit.h>
+#define LTMD_HAS_EXR_CONTEXT
+#endif
 #include <ImfChannelList.h>
 #include <ImfDoubleAttribute.h>
 #include <ImfFloatAttribute.h>
@@ -209,8 +213,18 @@ auto with_input(const std::string& path, int threads, const Use& use) {
     std::error_code error;
     if (!fs::exists(utf8_path(path), error)) fail(path, "does not exist");
     if (fs::is_directory(utf8_path(path), error)) fail(path, "is a folder, not a file");
+    errno = 0;
+    if (!std::ifstream(utf8_path(path), std::ios::binary))
+        fail(path, "cannot be opened (" + error_text(errno) + ")");
     try {
+#ifdef LTMD_HAS_EXR_CONTEXT
+        // Without a handler OpenEXR also prints what it throws.
+        const Imf::ContextInitializer quiet = Imf::ContextInitializer().setErrorHandler(
+            [](exr_const_context_t, exr_result_t, const char*) {});
+        Imf::InputFile file(path.c_str(), quiet, threads);
+#else
         Imf::InputFile file(path.c_str(), threads);
+#endif
         require_known_convention(path, file.header());
         return use(file);
     } catch (const FileError&) {

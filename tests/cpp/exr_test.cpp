@@ -201,6 +201,13 @@ TEST(Exr, AFullDiskLeavesTheOldFile) {
         EXPECT_TRUE(same_bits(read_exr(folder / "a.exr").pixels, old)) << room;
         EXPECT_EQ(folder.names(), std::vector<std::string>{"a.exr"}) << room;
     }
+    {
+        // A file that fits into the stream's buffer meets the disk after its last row.
+        const FileSizeLimit limit(50);
+        expect_contains(message_of([&] { write_exr(folder / "a.exr", old, 2, 2, rgba); }),
+                        "make room");
+    }
+    EXPECT_EQ(folder.names(), std::vector<std::string>{"a.exr"});
     const FileSizeLimit enough(whole);
     EXPECT_NO_THROW(write_exr(folder / "a.exr", pixels, 64, 64, rgba));
 }
