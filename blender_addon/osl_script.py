@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Script nodes that carry their compiled shader: no path, no text data-block, no compiler at render.
+"""Script nodes that carry their compiled shader: no path, no text data-block, no compiler needed.
 
-The shaders are in `osl/` beside this file in the released extension, beside the add-on's folder in a
-source tree.
+The shaders are in `osl/` beside this file in the released extension, beside the add-on's folder in
+a source tree.
 """
 
 import importlib.util
@@ -23,8 +23,11 @@ def folder():
 def fill(node, name, scene=None):
     """Compile shader `name` into a Script node. Raises RuntimeError if that fails."""
     scene = scene or bpy.context.scene
-    if importlib.util.find_spec("oslquery") is None and hasattr(bpy.utils, "expose_bundled_modules"):
-        bpy.utils.expose_bundled_modules()  # bpy as a module: the sockets are read by oslquery
+    if importlib.util.find_spec("oslquery") is None:
+        # Blender as a module hides it; without it the node gets no sockets.
+        expose = getattr(bpy.utils, "expose_bundled_modules", None)
+        if expose:
+            expose()
     text = bpy.data.texts.new(f"{name}.osl")
     engine = scene.render.engine
     try:

@@ -15,9 +15,7 @@ PARAMETERS = {"Height Response": "HeightResponse"}
 
 def build(tree):
     add_output(tree, "BSDF", "Shader", "Reflection; mix it over the rest of the material")
-    add_input(
-        tree, "Color", "Color", "How much of each colour is reflected", (0.8, 0.8, 0.8, 1.0)
-    )
+    add_input(tree, "Color", "Color", "How much of each colour is reflected", (0.8, 0.8, 0.8, 1.0))
     add_input(
         tree,
         "Roughness",

@@ -13,7 +13,8 @@ def build(tree):
         tree,
         "Tension",
         "Vector",
-        "How the surface is deformed from its rest state, for LTMD Glossy. 1, 0, 1 is the rest state",
+        "How the surface is deformed from its rest state, for LTMD Glossy. 1, 0, 1 is the rest "
+        "state",
     )
     add_output(tree, "Tangent", "Vector", "Direction of the UV map's U on the surface")
     add_input(

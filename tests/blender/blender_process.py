@@ -151,7 +151,8 @@ def mesh_object(name, vertices, faces, uvs=None):
     import numpy as np
 
     mesh = bpy.data.meshes.new(name)
-    mesh.from_pydata([tuple(map(float, v)) for v in vertices], [], [list(map(int, f)) for f in faces])
+    points = [tuple(map(float, v)) for v in vertices]
+    mesh.from_pydata(points, [], [list(map(int, f)) for f in faces])
     if uvs is not None:
         layer = mesh.uv_layers.new(name="UVMap")
         layer.uv.foreach_set("vector", np.ascontiguousarray(uvs, np.float32).ravel())

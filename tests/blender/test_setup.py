@@ -36,6 +36,9 @@ def dump(material):
                          l.to_socket.identifier] for l in tree.links),
     }, sort_keys=True, default=str)
 
+def counts():
+    return [len(bpy.data.node_groups), len(bpy.data.texts), len(bpy.data.materials)]
+
 def principled(material):
     return next(n for n in material.node_tree.nodes if n.type == "BSDF_PRINCIPLED")
 
@@ -59,7 +62,8 @@ def linked_colour(m):
     bump = m.node_tree.nodes.new("ShaderNodeBump")
     m.node_tree.links.new(bump.outputs[0], principled(m).inputs["Normal"])
     disp = m.node_tree.nodes.new("ShaderNodeDisplacement")
-    m.node_tree.links.new(disp.outputs[0], m.node_tree.nodes["Material Output"].inputs["Displacement"])
+    end = m.node_tree.nodes["Material Output"]
+    m.node_tree.links.new(disp.outputs[0], end.inputs["Displacement"])
 def everything(m):
     for name, v in (("Metallic", .5), ("Alpha", .5), ("Emission Strength", 1), ("Coat Weight", 1),
                     ("Transmission Weight", 1), ("Anisotropic", .5)):
@@ -91,7 +95,7 @@ for make in (lambda m: None, linked_colour, everything, mixed, no_principled, tw
     obj = cube()
     material = new_material("M", obj)
     make(material)
-    before, data = dump(material), [len(bpy.data.node_groups), len(bpy.data.texts), len(bpy.data.materials)]
+    before, data = dump(material), counts()
     bpy.ops.ltmd.setup(object_name=obj.name)
     cycles_out = material.node_tree.get_output_node("CYCLES")
     eevee_out = material.node_tree.get_output_node("EEVEE")
@@ -104,7 +108,7 @@ for make in (lambda m: None, linked_colour, everything, mixed, no_principled, tw
     after = dump(material)
     entry.update(same=before == after, left=obj.ltmd.source, before=before, after=after,
                  attribute_left="ltmd_rest" in obj.data.attributes,
-                 data=data == [len(bpy.data.node_groups), len(bpy.data.texts), len(bpy.data.materials)])
+                 data=data == counts())
     out[make.__name__] = entry
     bpy.data.objects.remove(obj)
     bpy.data.materials.remove(material)
@@ -369,10 +373,15 @@ camera((3, -6, 4), ortho_scale=6)
 world = bpy.data.worlds.new("World")
 out = {}
 for name, parts, scale in (
-    ("keys", (keys,), False), ("armature", (bones,), True), ("subsurf, keys", (subsurf, keys), False),
-    ("armature, subsurf", (bones, subsurf), True), ("subsurf, armature", (subsurf, bones), True),
-    ("mirror, armature", (mirror, bones), True), ("mirror, subsurf, armature", (mirror, subsurf, bones), True),
-    ("simple subdivision, armature", (simple, bones), True), ("solidify, armature", (solidify, bones), True),
+    ("keys", (keys,), False),
+    ("armature", (bones,), True),
+    ("subsurf, keys", (subsurf, keys), False),
+    ("armature, subsurf", (bones, subsurf), True),
+    ("subsurf, armature", (subsurf, bones), True),
+    ("mirror, armature", (mirror, bones), True),
+    ("mirror, subsurf, armature", (mirror, subsurf, bones), True),
+    ("simple subdivision, armature", (simple, bones), True),
+    ("solidify, armature", (solidify, bones), True),
 ):
     obj = sphere()
     for part in parts:
@@ -395,8 +404,8 @@ for name, parts, scale in (
     c = t[:, 0] ** 2, t[:, 0] * t[:, 1], t[:, 1] ** 2 + t[:, 2] ** 2
     mean, dev = (c[0] + c[2]) / 2, np.hypot((c[0] - c[2]) / 2, c[1])
     limits = np.linalg.svd(np.diag((1.5, .7, 1.2)) if scale else MATRIX, compute_uv=False)
-    out[name] = dict(hit=int(hit.sum()), rest=float(np.abs(at_rest[hit][:, :3] - (1, 0, 1)).max()),
-                     largest=float(np.sqrt(mean + dev).max()), smallest=float(np.sqrt(mean - dev).min()),
+    out[name] = dict(hit=int(hit.sum()), rest=np.abs(at_rest[hit][:, :3] - (1, 0, 1)).max(),
+                     largest=np.sqrt(mean + dev).max(), smallest=np.sqrt(mean - dev).min(),
                      limits=[limits[0], limits[-1]], generated=source.needs_generated(obj))
     for item in list(bpy.data.objects):
         if item.type in ("MESH", "ARMATURE"):
@@ -410,8 +419,10 @@ report(out=out)
 def test_rigs_are_at_rest_at_rest_and_follow_the_pose():
     result = run(RIGS)
     for name, entry in result["out"].items():
-        print(f"{name}: at rest off by {entry['rest']:.1e}; stretch {entry['smallest']:.4f} to "
-              f"{entry['largest']:.4f}, limits {entry['limits'][1]:.4f} to {entry['limits'][0]:.4f}")
+        print(
+            f"{name}: at rest off by {entry['rest']:.1e}; stretch {entry['smallest']:.4f} to "
+            f"{entry['largest']:.4f}, limits {entry['limits'][1]:.4f}, {entry['limits'][0]:.4f}"
+        )
     for name, entry in result["out"].items():
         assert entry["hit"] > 150, (name, entry)
         assert entry["rest"] < 5e-5, (name, entry)
@@ -463,7 +474,43 @@ report(problem=library.problem(), before=before, after=" ".join(words))
         addon=False,
     )
     assert "Python" in result["problem"] and "ltmd library" in result["problem"]
-    assert "Not set up" in result["before"] and "The render engine is not Cycles" in result["before"]
+    assert "Not set up" in result["before"]
+    assert "The render engine is not Cycles" in result["before"]
     assert "ltmd library" in result["before"] and "Output Folder" in result["before"]
     assert "Renders on the CPU with Open Shading Language" in result["after"]
     assert "Live:" in result["after"] and "Roughness" in result["after"]
+
+
+def test_remove_after_textures_leaves_no_image_and_the_same_tree():
+    result = run(
+        PRELUDE
+        + """
+a, b = cube("A"), cube("B")
+material = new_material("Shared", a)
+b.data.materials.append(material)
+before = dump(material)
+bpy.ops.ltmd.setup(object_name="A")
+bpy.ops.ltmd.setup(object_name="B")
+files = {u: {"path": f"/tmp/none.{u}.0001.exr", "frames": [1, 2]} for u in (1001, 1002, 1011)}
+source.switch_to_texture(a, material, files)
+own = a.material_slots[0].material
+nodes = len(surface.our_nodes(own, "source"))
+source.switch_to_texture(a, own, files)  # again: replaced, not doubled
+again = len(surface.our_nodes(own, "source")), len(bpy.data.images)
+source.switch_to_live(a, own)
+live = len(bpy.data.images), a.ltmd.source
+source.switch_to_texture(a, own, files)
+bpy.ops.ltmd.remove(object_name="A")
+b_still = surface.is_set_up(material), b.ltmd.source
+bpy.ops.ltmd.remove(object_name="B")
+report(nodes=nodes, again=again, live=live, b_still=b_still, images=len(bpy.data.images),
+       own=dump(own) == before, shared=dump(material) == before, groups=len(bpy.data.node_groups),
+       left=[list(o.data.attributes.keys()) for o in (a, b)])
+"""
+    )
+    assert result["nodes"] == 1 + 3 * 2 + 2  # a UV map, per tile image and group, two shifts
+    assert result["again"] == [9, 3] and result["live"] == [0, "LIVE"]
+    assert result["b_still"] == [True, "LIVE"]
+    assert result["images"] == 0 and result["groups"] == 0
+    assert result["own"] and result["shared"]
+    assert not any("ltmd_rest" in names for names in result["left"])

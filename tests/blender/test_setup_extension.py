@@ -21,10 +21,10 @@ def stub_wheel(folder):
     with zipfile.ZipFile(path, "w") as wheel:
         wheel.writestr("ltmd/__init__.py", "stub = True\n")
         info = f"{name}.dist-info"
-        wheel.writestr(f"{info}/METADATA", f"Metadata-Version: 2.1\nName: pyltmd\nVersion: {version()}\n")
-        wheel.writestr(
-            f"{info}/WHEEL", "Wheel-Version: 1.0\nRoot-Is-Purelib: false\nTag: py3-none-linux_x86_64\n"
-        )
+        about = f"Metadata-Version: 2.1\nName: pyltmd\nVersion: {version()}\n"
+        wheel.writestr(f"{info}/METADATA", about)
+        tag = "Wheel-Version: 1.0\nRoot-Is-Purelib: false\nTag: py3-none-linux_x86_64\n"
+        wheel.writestr(f"{info}/WHEEL", tag)
         wheel.writestr(f"{info}/RECORD", "")
     return path
 
@@ -33,11 +33,9 @@ def stub_wheel(folder):
 def package(tmp_path_factory):
     folder = tmp_path_factory.mktemp("extension")
     output = folder / "ltmd.zip"
-    subprocess.run(
-        [blender_python(), ROOT / "blender_addon/build_extension.py", stub_wheel(folder), "-o", output],
-        check=True,
-        capture_output=True,
-    )
+    script = ROOT / "blender_addon/build_extension.py"
+    command = [blender_python(), script, stub_wheel(folder), "-o", output]
+    subprocess.run(command, check=True, capture_output=True)
     return output
 
 

@@ -5,11 +5,11 @@ The expected values are float64 and follow the paper's D R^-1 with explicit fram
 formulas.
 """
 
+import sys
+
 import bpy
 import numpy as np
 from blender_process import ROOT, camera, cycles, mesh_object, render, write_image
-
-import sys
 
 sys.path.insert(0, str(ROOT))
 

@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """The lobe of LTMD Glossy is the stock Glossy BSDF with the equivalent alphas and tangent."""
 
-import numpy as np
 from blender_process import ROOT, run
 
-PRELUDE = f"""
+PRELUDE = (
+    f"""
 sys.path.insert(0, {str(ROOT / "tests" / "osl")!r})
 from shading import *
-""" + """
+"""
+    + """
 cycles(48, 48, samples=4)
 obj = mesh_object("Plane", [(-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0)], [(0, 1, 2, 3)],
                   [(0, 0), (1, 0), (1, 1), (0, 1)])
@@ -61,6 +62,7 @@ tension = group(tree, live_tension)
 tree.links.new(uv.outputs[0], tension.inputs["UV"])
 tree.links.new(tension.outputs["Tangent"], reflection.inputs["Tangent"])
 """
+)
 
 
 def check(result):

@@ -21,7 +21,9 @@ def close(result):
         assert error < case.get("tolerance", TOLERANCE), (case["name"], error, got[0])
 
 
-AFFINE = PRELUDE + """
+AFFINE = (
+    PRELUDE
+    + """
 cases = []
 cycles(8, 8)
 view = camera((0, 0, 3), ortho_scale=0.5)
@@ -50,6 +52,7 @@ MIRRORED = UV * (-1, 1)
 A = [[1.7, 0.6], [0.2, 0.8]]
 B = [[0.5, -0.9], [0.3, 1.1]]
 """
+)
 
 
 def test_affine_plane_equals_the_analytic_tension():
