@@ -1,15 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Bake Tension: the deformation of mesh objects over frames, as one float EXR a frame and UV tile.
 
-The order of a bake: look at everything that can be known to be wrong (Bake.__init__), evaluate the
-rest states and open the folder (prepare), visit the frames (run or start), wait for the writers and
-read every file back (finish). Only prepare and finish touch bpy.data.
+The order of a bake: look for everything that can be known to be wrong (Bake.__init__), open the
+folder and evaluate the rest states (prepare), visit the frames, wait for the writers and read every
+file back (run or start), switch the materials (finish). Only prepare and finish touch bpy.data.
 """
 
 import os
 import tempfile
 import threading
 import time
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 
 import bpy
@@ -302,8 +303,6 @@ class Bake:
         evaluation = self._evaluation(stop)
         if self.order:
             evaluate.run(evaluation)
-        else:
-            evaluation.finished = True
         self._ended(evaluation)
 
     def start(self, done):
@@ -320,7 +319,6 @@ class Bake:
         if self.order:
             evaluate.start(evaluation, over)
         else:
-            evaluation.finished = True
             over()
 
     def _evaluation(self, stop):
@@ -333,6 +331,7 @@ class Bake:
             [target.uid for target in self.targets],
             self.order,
             self._visit,
+            self._conclude,
             lambda: self.stopped.is_set() or (stop is not None and stop()),
         )
 
@@ -487,6 +486,24 @@ class Bake:
         if failure is not None:
             raise WriteFailure(str(failure)) from None
 
+    def _conclude(self):
+        """Waits for the writers and reads every written file back."""
+        for target in self.targets:
+            self._close(target)
+            found = [
+                (path, target, tile, frame)
+                for frame in sorted(target.todo)
+                for tile, files in self._paths(target, target.tiles, frame).items()
+                for path in files.values()
+            ]
+            with ThreadPoolExecutor(max_workers=min(4, os.cpu_count() or 1)) as readers:
+                whole = list(readers.map(lambda file: self._is_finished(*file), found))
+            self.problems += [
+                f"{path} is not the file that was written"
+                for (path, *_), good in zip(found, whole, strict=True)
+                if not good
+            ]
+
     def _metadata(self, target, tile):
         settings = self.settings
         return {
@@ -538,33 +555,19 @@ class Bake:
         except BaseException as raised:
             self._fail(raised)
             raise
-        self.status = "cancelled" if evaluation.cancelled else "ok"
+        if evaluation.cancelled:
+            self.status = "cancelled"
+        else:
+            self.verified = True
+            self.status = "damaged" if self.problems else "ok"
 
     def finish(self):
-        """Reads the written files back, and if asked turns the materials to them."""
+        """If asked, turns the materials to the files; on the main thread."""
         if self.status != "ok":
-            return
-        for target in self.targets:
-            self.problems += self._damaged(target)
-        self.verified = True
-        if self.problems:
-            self.status = "damaged"
             return
         if self.settings.switch:
             for target in self.targets:
                 self._switch(target)
-
-    def _damaged(self, target):
-        problems = []
-        for path in target.files:
-            if not os.path.isfile(path):
-                problems.append(f"{path} is missing")
-        report = self.ltmd.verify(self.folder)
-        names = {os.path.basename(path) for path in target.files}
-        for problem in report.problems:
-            if any(name in problem for name in names):
-                problems.append(problem)
-        return problems
 
     def _switch(self, target):
         obj = self._find(bpy.data.objects, target.uid)

@@ -16,17 +16,18 @@ class Evaluation:
     """One run over frames. Holds names and ids, no data-blocks: an undo may free those meanwhile.
 
     visit(frame, {session_uid: evaluated object or None}) is called for every frame in order; None
-    stands for an object the render does not contain at this frame. An exception ends the run and is
-    kept in .error.
+    stands for an object the render does not contain at this frame. conclude() follows the last
+    frame, on the same thread. An exception ends the run and is kept in .error.
     """
 
-    def __init__(self, scene, view_layer, uids, frames, visit, stop=None):
+    def __init__(self, scene, view_layer, uids, frames, visit, conclude=None, stop=None):
         self.scene = scene.session_uid
         self.scene_name = scene.name
         self.view_layer = view_layer.name
         self.uids = set(uids)
         self.frames = list(frames)
         self.visit = visit
+        self.conclude = conclude
         self.stop = stop
         self.started = False
         self.finished = False
@@ -50,6 +51,8 @@ class Evaluation:
                 engine.frame_set(frame, 0.0)
                 self.visit(frame, self._objects(depsgraph))
                 engine.update_progress((done + 1) / len(self.frames))
+            if self.conclude is not None:
+                self.conclude()
             self.finished = True
         except Exception as error:
             self.error = error
