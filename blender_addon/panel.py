@@ -51,6 +51,8 @@ def draw(layout, context):
 
     row = layout.row(align=True)
     row.operator("ltmd.setup", text="Set Up LTMD").object_name = ""
+    if obj.ltmd.source == "TEXTURE":
+        row.operator("ltmd.setup", text="Measure Live").live = True
     if obj.ltmd.source != "NONE":
         row.operator("ltmd.remove", text="Remove").object_name = ""
 

@@ -97,6 +97,12 @@ class LtmdObjectSettings(bpy.types.PropertyGroup):
         subtype="DIR_PATH",
         override=OVERRIDABLE,
     )
+    slot_added: BoolProperty(
+        name="Slot Made by Set-Up",
+        description="The material slot was made because the object had none",
+        default=False,
+        options={"HIDDEN"},
+    )
 
 
 class LtmdMaterialSettings(bpy.types.PropertyGroup):

@@ -53,11 +53,15 @@ def target_objects(context, name):
     return meshes
 
 
-def set_up(obj):
-    """Set up one object; return sentences for the user. Raises SourceError."""
+def set_up(obj, live=False):
+    """Set up one object; return sentences for the user. Raises SourceError.
+
+    live: also turn a material that reads baked images back to measuring live.
+    """
     if not is_writable(obj):
         raise source.SourceError(f"{obj.name}: {REFUSAL}")
     told = source.store_rest(obj)
+    textures = obj.ltmd.source == "TEXTURE" and not live
     if not any(slot.material for slot in obj.material_slots):
         _new_material(obj)
     for material in list(dict.fromkeys(s.material for s in obj.material_slots if s.material)):
@@ -66,13 +70,12 @@ def set_up(obj):
             linked, material = material, source.own_copy(obj, material)
             told.append(f"{obj.name} has its own copy of the linked material {linked.name} now")
         if surface.is_set_up(material):
-            if obj.ltmd.source == "TEXTURE":
+            if textures:
                 continue
         else:
             told += surface.add(material)
         source.switch_to_live(obj, material)
-    if obj.ltmd.source == "NONE":
-        obj.ltmd.source = "LIVE"
+    obj.ltmd.source = "TEXTURE" if textures else "LIVE"
     return told
 
 
@@ -104,8 +107,8 @@ def _forget(obj):
     shared = any(o.data == mesh and o.ltmd.source == "LIVE" for o in bpy.data.objects)
     if is_writable(mesh) and not shared:
         source.clear_rest(mesh)
-    if "ltmd_slot" in obj:
-        del obj["ltmd_slot"]
+    if obj.ltmd.slot_added:
+        obj.ltmd.slot_added = False
         if is_writable(mesh) and len(mesh.materials) and mesh.materials[-1] is None:
             mesh.materials.pop()
 
@@ -121,7 +124,7 @@ def _new_material(obj):
         obj.material_slots[0].material = material
     elif is_writable(obj.data):
         obj.data.materials.append(material)
-        obj["ltmd_slot"] = True
+        obj.ltmd.slot_added = True
     else:
         raise source.SourceError(f"{obj.name} has no material slot: {REFUSAL}")
 
@@ -136,6 +139,7 @@ class _OnObjects:
 
     @classmethod
     def poll(cls, context):
+        cls.poll_message_set("Works in object mode")
         return context.mode == "OBJECT"
 
     def execute(self, context):
@@ -171,6 +175,13 @@ class LTMD_OT_setup(_OnObjects, bpy.types.Operator):
         default=True,
     )
 
+    live: BoolProperty(
+        name="Measure Live",
+        description="Turn materials that read baked images back to measuring while rendering",
+        default=False,
+        options={"SKIP_SAVE"},
+    )
+
     def invoke(self, context, event):
         if self.use_osl and not osl_on(context.scene):
             return context.window_manager.invoke_confirm(
@@ -183,7 +194,7 @@ class LTMD_OT_setup(_OnObjects, bpy.types.Operator):
         return self.execute(context)
 
     def work(self, obj):
-        return set_up(obj)
+        return set_up(obj, self.live)
 
     def after(self, context, done):
         scene = context.scene

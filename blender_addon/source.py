@@ -105,9 +105,11 @@ def store_rest(obj):
         if is_writable(mesh):
             clear_rest(mesh)
         return [f"{obj.name}: {live_limits(obj)}"]
-    if not is_writable(mesh) or obj.mode == "EDIT":
+    if not is_writable(mesh):
         if obj.ltmd.rest_mode != "BASIS":
-            raise SourceError(f"{obj.name}: the rest state cannot be stored in this mesh now")
+            raise SourceError(
+                f"{obj.name}: linked mesh data cannot store a rest state; bake instead"
+            )
         return [f"{obj.name}: the deformation shows in final renders only"]
     positions = rest_positions(obj)
     attribute = mesh.attributes.get(REST_ATTRIBUTE)

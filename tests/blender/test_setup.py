@@ -134,11 +134,11 @@ obj = cube(uv=False)
 bpy.ops.ltmd.setup(object_name="Cube")
 during = [m.name for m in obj.data.materials], obj.ltmd.source
 bpy.ops.ltmd.remove(object_name="Cube")
-report(during=during, after=[len(obj.data.materials), len(bpy.data.materials), list(obj.keys())])
+report(during=during, after=[len(obj.data.materials), len(bpy.data.materials), obj.ltmd.slot_added])
 """
     )
     assert result["during"][1] == "LIVE" and len(result["during"][0]) == 1
-    assert result["after"][:2] == [0, 0] and "ltmd_slot" not in result["after"][2]
+    assert result["after"] == [0, 0, False]
 
 
 RENDERED = (
@@ -497,7 +497,9 @@ own = a.material_slots[0].material
 nodes = len(surface.our_nodes(own, "source"))
 source.switch_to_texture(a, own, files)  # again: replaced, not doubled
 again = len(surface.our_nodes(own, "source")), len(bpy.data.images)
-source.switch_to_live(a, own)
+bpy.ops.ltmd.setup(object_name="A")  # set-up alone keeps the baked images
+assert a.ltmd.source == "TEXTURE"
+bpy.ops.ltmd.setup(object_name="A", live=True)
 live = len(bpy.data.images), a.ltmd.source
 source.switch_to_texture(a, own, files)
 bpy.ops.ltmd.remove(object_name="A")
