@@ -179,6 +179,10 @@ map = tree.nodes.new("ShaderNodeUVMap")
 tree.links.new(map.outputs[0], tension.inputs["UV"])
 show(tree, output, tension.outputs["Tension"])
 out["rest without area"] = render()
+flat[2:, 1] = 1e-8  # nearly none
+obj.data.attributes["ltmd_rest"].data.foreach_set("vector", flat.ravel())
+obj.data.update()
+out["rest with hardly any area"] = render()
 # A UV map without area: the stretches are still those of the surface.
 obj.data.attributes["ltmd_rest"].data.foreach_set(
     "vector", np.array([(-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0)], np.float32).ravel())
