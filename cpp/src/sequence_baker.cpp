@@ -102,7 +102,7 @@ struct SequenceBaker::State {
             options.metadata["ltmd:udim"] = std::to_string(udim(options.tile));
         frames.resize(static_cast<std::size_t>(options.in_flight));
         for (Frame& frame : frames) free.push_back(&frame);
-        const int writers = std::min(options.in_flight, std::max(2, thread_count()));
+        const int writers = std::min(options.in_flight, thread_count());
         try {
             for (int i = 0; i < writers; ++i) threads.emplace_back([this] { write_files(); });
         } catch (...) {

@@ -164,7 +164,7 @@ TEST(SequenceBaker, DescribesEachFile) {
     SequenceBaker baker(strip.view(), rest, width, height, options);
     EXPECT_GT(baker.coverage().covered(), 0u);
     baker.frame(strip.rest, {{"tension", folder / "a.exr"}},
-                {{"ltmd:frame", "12"}, {"ltmd:pass", "other"}});
+                {{"ltmd:frame", "12"}, {"ltmd:pass", "other"}, {"ltmd:convention", "9"}});
     baker.finish();
     Metadata metadata = exr_metadata(folder / "a.exr");
     EXPECT_EQ(metadata["ltmd:convention"], "1");
@@ -246,6 +246,22 @@ TEST(SequenceBaker, CancelLeavesOnlyWholeFiles) {
     EXPECT_EQ(folder.names().size(), baker.files_written());
     for (const std::string& name : folder.names())
         EXPECT_EQ(read_exr(folder / name).width, 1024) << name;
+}
+
+TEST(SequenceBaker, CancelDropsWhatIsQueued) {
+    const Strip strip;
+    const RestState rest(strip.view(), strip.rest);
+    const TemporaryFolder folder;
+    set_thread_count(2);  // two writers
+    SequenceBaker baker(strip.view(), rest, 512, 512, {.in_flight = 12});
+    for (int i = 0; i < 12; ++i)
+        baker.frame(strip.deformed(2), {{"tension", folder / std::to_string(i)}});
+    baker.cancel();
+    const std::size_t written = baker.files_written();
+    EXPECT_THROW(baker.finish(), Cancelled);
+    EXPECT_LE(baker.files_written(), written + 2);
+    EXPECT_EQ(folder.names().size(), baker.files_written());
+    set_thread_count(0);
 }
 
 TEST(SequenceBaker, DestructionDropsTheQueueAndWaits) {

@@ -10,15 +10,24 @@
 namespace ltmd::inline v0 {
 
 struct VerifyReport {
-    std::vector<std::string> problems;                  ///< One sentence each, naming the file or frame.
-    std::map<std::string, std::vector<int>> sequences;  ///< Sequence name (`object_pass` or `object_pass.udim`) -> its frames, sorted.
+    std::vector<std::string>
+        problems;  ///< One sentence each, naming the file or the sequence and frames.
+    std::map<std::string, std::vector<int>>
+        sequences;  ///< Sequence name (`object_pass` or `object_pass.udim`) -> its frames, sorted.
     bool ok() const { return problems.empty(); }
 };
 
-/// Checks every baked sequence in a folder: each frame present (a missing one would render as the identity), one size per sequence, all
-/// values finite, tension's diagonal in [1e-3, 1e3], A = 1, one convention. The frames expected are `frames` if not empty, else the range that the
-/// files' own metadata states (`ltmd:frame_start`, `ltmd:frame_end`), else lowest to highest. Files without `ltmd:convention` are not ours and ignored,
-/// unless unreadable. Throws FileError when the folder cannot be read; a folder without sequences is a problem, not an error.
+/// Checks every baked sequence in a folder: files named `<sequence>.<frame of 4 to 9 digits>.exr`
+/// with `ltmd:convention`. Others are not ours and ignored, unless they have such a name and are
+/// unreadable.
+///
+/// Each frame is present (a missing one would render as the identity) and once, has the number that
+/// its header states, and can be read whole; all frames of a sequence have one size and one
+/// convention, pass, `ltmd:per`, UV map and rest state; all values are finite, tension's diagonal
+/// is in [1e-3, 1e3] and A = 1. The frames expected are `frames` if not empty, else the range that
+/// the files' own metadata states (`ltmd:frame_start`, `ltmd:frame_end`), else lowest to highest.
+/// Throws FileError when the folder cannot be read; a folder without sequences is a problem, not an
+/// error.
 LTMD_API VerifyReport verify(const std::string& directory, const std::vector<int>& frames = {});
 
 }  // namespace ltmd::inline v0

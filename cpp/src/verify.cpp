@@ -1,0 +1,290 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "ltmd/verify.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <mutex>
+#include <optional>
+#include <set>
+#include <system_error>
+
+#include "ltmd/errors.h"
+#include "ltmd/exr.h"
+#include "parallel.h"
+#include "utf8_path.h"
+
+namespace ltmd::inline v0 {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr float smallest_diagonal = 1e-3f, largest_diagonal = 1e3f, rounding = 1e-5f;
+
+/// A file of a sequence.
+struct File {
+    std::string name;  ///< Within the folder.
+    std::optional<Metadata> metadata;
+    std::array<int, 2> size{};
+};
+
+/// Frame -> file.
+using Sequence = std::map<int, File>;
+
+std::optional<int> whole_number(const std::string& text) {
+    int number = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    if (error != std::errc() || end != text.data() + text.size()) return {};
+    return number;
+}
+
+struct FrameName {
+    std::string sequence;
+    int frame;
+};
+
+/// `balloon_tension.1001.0007.exr` -> balloon_tension.1001, 7. Frames before 0 are written as -007.
+std::optional<FrameName> parse(const std::string& name) {
+    constexpr std::string_view extension = ".exr";
+    if (!name.ends_with(extension)) return {};
+    const std::string stem = name.substr(0, name.size() - extension.size());
+    const std::size_t dot = stem.rfind('.');
+    if (dot == std::string::npos || dot == 0) return {};
+    const std::string digits = stem.substr(dot + 1);
+    if (digits.size() < 4 || digits.size() > 9) return {};
+    const std::optional<int> frame = whole_number(digits);
+    if (!frame) return {};
+    return FrameName{stem.substr(0, dot), *frame};
+}
+
+std::string frame_text(int frame) { return "frame " + std::to_string(frame); }
+
+std::string size_text(std::array<int, 2> size) {
+    return std::to_string(size[0]) + " x " + std::to_string(size[1]);
+}
+
+class Check {
+public:
+    explicit Check(const std::string& directory) : directory_(directory) {
+        const fs::path folder = utf8_path(directory);
+        std::error_code error;
+        if (!fs::is_directory(folder, error))
+            throw FileError(
+                directory + ": " +
+                (fs::exists(folder, error) ? "is a file, not a folder" : "does not exist"));
+        std::set<std::string> names;
+        fs::directory_iterator entry(folder, error);
+        for (; !error && entry != fs::directory_iterator(); entry.increment(error)) {
+            std::error_code ignored;
+            if (!entry->is_directory(ignored)) names.insert(utf8_text(entry->path().filename()));
+        }
+        if (error) throw FileError(directory + ": cannot be read (" + error.message() + ")");
+        for (const std::string& name : names) add(name);
+    }
+
+    VerifyReport run(const std::vector<int>& frames) {
+        for (auto& [name, sequence] : sequences_) {
+            // A broken file alone may be anyone's.
+            if (std::none_of(sequence.begin(), sequence.end(),
+                             [](const auto& f) { return f.second.metadata.has_value(); }))
+                continue;
+            for (const auto& [frame, file] : sequence) report_.sequences[name].push_back(frame);
+            check_frames(name, sequence, frames);
+            check_alike(name, sequence);
+            for (const auto& [frame, file] : sequence) check_file(name, frame, file);
+        }
+        if (report_.sequences.empty())
+            problem(directory_, "holds no baked sequence (files such as balloon_tension.0001.exr)");
+        return std::move(report_);
+    }
+
+private:
+    void problem(const std::string& subject, const std::string& sentence) {
+        report_.problems.push_back(subject + ": " + sentence);
+    }
+
+    std::string path(const std::string& name) const {
+        return utf8_text(utf8_path(directory_) / utf8_path(name));
+    }
+
+    void add(const std::string& name) {
+        const std::optional<FrameName> parsed = parse(name);
+        if (!parsed) return;
+        File file{name, {}, {}};
+        try {
+            file.metadata = exr_metadata(path(name));
+            if (!file.metadata->contains("ltmd:convention")) return;
+            file.size = exr_size(path(name));
+        } catch (const FileError& error) {
+            file.metadata.reset();
+            report_.problems.push_back(error.what());
+        }
+        const auto [found, is_new] =
+            sequences_[parsed->sequence].emplace(parsed->frame, std::move(file));
+        if (!is_new)
+            problem(parsed->sequence, frame_text(parsed->frame) + " has two files, " +
+                                          found->second.name + " and " + name + ": delete one");
+    }
+
+    /// Names the missing ones of `expected` frames, runs of neighbours together.
+    void check_frames(const std::string& name, const Sequence& sequence,
+                      const std::vector<int>& frames) {
+        std::vector<std::pair<int, int>> missing;  // first and last of each run
+        if (!frames.empty()) {
+            const std::set<int> expected(frames.begin(), frames.end());
+            bool in_run = false;
+            for (const int frame : expected) {
+                const bool absent = !sequence.contains(frame);
+                if (absent && in_run && missing.back().second == frame - 1)
+                    missing.back().second = frame;
+                else if (absent)
+                    missing.emplace_back(frame, frame);
+                in_run = absent;
+            }
+        } else {
+            std::int64_t first = sequence.begin()->first, last = sequence.rbegin()->first;
+            for (const auto& [frame, file] : sequence) {
+                first =
+                    std::min<std::int64_t>(first, stated(file, "ltmd:frame_start").value_or(frame));
+                last = std::max<std::int64_t>(last, stated(file, "ltmd:frame_end").value_or(frame));
+            }
+            std::int64_t next = first;
+            const auto gap_until = [&](std::int64_t frame) {
+                if (next < frame)
+                    missing.emplace_back(static_cast<int>(next), static_cast<int>(frame - 1));
+                next = frame + 1;
+            };
+            for (const auto& [frame, file] : sequence) gap_until(frame);
+            gap_until(last + 1);
+        }
+        for (const auto& [first, last] : missing)
+            if (first == last)
+                problem(name, frame_text(first) +
+                                  " is missing (it would render as undeformed): bake it again");
+            else
+                problem(name,
+                        "frames " + std::to_string(first) + " to " + std::to_string(last) +
+                            " are missing (they would render as undeformed): bake them again");
+    }
+
+    static std::optional<int> stated(const File& file, const std::string& key) {
+        if (!file.metadata) return {};
+        const auto found = file.metadata->find(key);
+        return found == file.metadata->end() ? std::nullopt : whole_number(found->second);
+    }
+
+    /// Each frame against the first that can be read.
+    void check_alike(const std::string& name, const Sequence& sequence) {
+        const auto first = std::find_if(sequence.begin(), sequence.end(), [](const auto& f) {
+            return f.second.metadata.has_value();
+        });
+        for (auto it = std::next(first); it != sequence.end(); ++it) {
+            const auto& [frame, file] = *it;
+            if (!file.metadata) continue;
+            if (file.size != first->second.size)
+                problem(name, frame_text(frame) + " is " + size_text(file.size) + ", " +
+                                  frame_text(first->first) + " is " +
+                                  size_text(first->second.size) + ": bake one of them again");
+            for (const char* key :
+                 {"ltmd:convention", "ltmd:pass", "ltmd:per", "ltmd:uv_map", "ltmd:rest"}) {
+                const std::string mine = value(file, key), others = value(first->second, key);
+                if (mine != others)
+                    problem(name, frame_text(frame) + " has " + key + " '" + mine + "', " +
+                                      frame_text(first->first) + " has '" + others +
+                                      "': bake one of them again");
+            }
+        }
+    }
+
+    static std::string value(const File& file, const std::string& key) {
+        const auto found = file.metadata->find(key);
+        return found == file.metadata->end() ? std::string() : found->second;
+    }
+
+    void check_file(const std::string& name, int frame, const File& file) {
+        if (!file.metadata) return;  // already a problem
+        const std::optional<int> header_frame = stated(file, "ltmd:frame");
+        if (header_frame && *header_frame != frame)
+            problem(name, frame_text(frame) + " says in its header that it is " +
+                              frame_text(*header_frame) +
+                              ": it was renamed, or copied over another; bake it again");
+        try {
+            check_pixels(name, frame, read_exr(path(file.name)),
+                         value(file, "ltmd:pass") == "tension");
+        } catch (const FileError& error) {
+            report_.problems.push_back(error.what());
+        }
+    }
+
+    void check_pixels(const std::string& name, int frame, const ExrImage& image, bool is_tension) {
+        const std::size_t count = image.channels.size();
+        const auto channel = [&](const char* channel_name) {
+            const auto found =
+                std::find(image.channels.begin(), image.channels.end(), channel_name);
+            return static_cast<std::size_t>(found - image.channels.begin());
+        };
+        const std::size_t red = channel("R"), blue = channel("B"), alpha = channel("A");
+        if (alpha == count)
+            problem(name, frame_text(frame) + " has no channel A: Blender needs it; bake it again");
+        if (is_tension && (red == count || blue == count)) {
+            problem(name, frame_text(frame) +
+                              " has no channels R, G, B, so it holds no tension: bake it again");
+            is_tension = false;
+        }
+        report_first(name, frame, image, "a value that is not finite", [&](const float* p) {
+            return std::any_of(p, p + count, [](float v) { return !std::isfinite(v); });
+        });
+        if (is_tension)
+            report_first(name, frame, image, "a tension with a diagonal outside 0.001 to 1000",
+                         [&](const float* p) { return outside(p[red]) || outside(p[blue]); });
+        if (alpha < count)
+            report_first(name, frame, image, "an alpha other than 1",
+                         [&](const float* p) { return std::isfinite(p[alpha]) && p[alpha] != 1; });
+    }
+
+    static bool outside(float diagonal) {
+        return diagonal < smallest_diagonal * (1 - rounding) ||
+               diagonal > largest_diagonal * (1 + rounding);
+    }
+
+    /// One problem for all pixels that `is_bad`, with the first one's place.
+    void report_first(const std::string& name, int frame, const ExrImage& image,
+                      const std::string& what, const std::function<bool(const float*)>& is_bad) {
+        const auto width = static_cast<std::size_t>(image.width);
+        const std::size_t count = image.channels.size(),
+                          pixels = width * static_cast<std::size_t>(image.height);
+        std::size_t first = std::numeric_limits<std::size_t>::max(), bad = 0;
+        std::mutex mutex;
+        parallel_for(pixels, 1 << 16, [&](std::size_t begin, std::size_t end) {
+            std::size_t piece_first = std::numeric_limits<std::size_t>::max(), piece_bad = 0;
+            for (std::size_t i = begin; i < end; ++i)
+                if (is_bad(image.pixels.data() + i * count)) {
+                    piece_first = std::min(piece_first, i);
+                    ++piece_bad;
+                }
+            const std::lock_guard lock(mutex);
+            first = std::min(first, piece_first);
+            bad += piece_bad;
+        });
+        if (bad == 0) return;
+        problem(name, frame_text(frame) + " has " + what + " in " + std::to_string(bad) +
+                          (bad == 1 ? " pixel" : " pixels") + ", first at column " +
+                          std::to_string(first % width) + ", row " + std::to_string(first / width) +
+                          ": bake it again");
+    }
+
+    std::string directory_;
+    std::map<std::string, Sequence> sequences_;
+    VerifyReport report_;
+};
+
+}  // namespace
+
+VerifyReport verify(const std::string& directory, const std::vector<int>& frames) {
+    return Check(directory).run(frames);
+}
+
+}  // namespace ltmd::inline v0
