@@ -24,6 +24,16 @@ Metadata parse_metadata(const py::dict& metadata) {
     return result;
 }
 
+namespace {
+
+/// Other programs' headers need not be UTF-8: what is not becomes U+FFFD.
+py::str decode(const std::string& text) {
+    return py::reinterpret_steal<py::str>(
+        PyUnicode_DecodeUTF8(text.data(), static_cast<py::ssize_t>(text.size()), "replace"));
+}
+
+}  // namespace
+
 void bind_exr(py::module_& module) {
     using namespace py::literals;
     module.attr("convention") = convention;
@@ -94,8 +104,13 @@ Raises OSError for an unreadable file, or one of a newer `ltmd:convention` than 
         "exr_metadata",
         [](py::handle path) {
             const std::string file = parse_path(path);
-            py::gil_scoped_release release;
-            return exr_metadata(file);
+            const Metadata metadata = [&] {
+                py::gil_scoped_release release;
+                return exr_metadata(file);
+            }();
+            py::dict result;
+            for (const auto& [key, value] : metadata) result[decode(key)] = decode(value);
+            return result;
         },
         "path"_a,
         "The text and number attributes of an OpenEXR file's header, as a dict of str. Raises as "

@@ -118,6 +118,7 @@ void require_uv(const MeshView& mesh) {
 }
 
 std::vector<Tile> tiles(const MeshView& mesh) {
+    validate(mesh);
     require_uv(mesh);
     const auto by_row = [](const Tile& a, const Tile& b) {
         return a.v != b.v ? a.v < b.v : a.u < b.u;

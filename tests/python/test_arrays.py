@@ -455,5 +455,5 @@ def test_stub_names_what_the_module_has():
 def test_every_public_function_has_a_docstring():
     for name in ltmd.__all__:
         thing = getattr(ltmd, name)
-        if callable(thing):
+        if callable(thing) and not (isinstance(thing, type) and issubclass(thing, Exception)):
             assert (thing.__doc__ or "").strip(), name

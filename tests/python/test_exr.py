@@ -134,6 +134,13 @@ def test_reads_what_others_write(tmp_path, rng):
     assert_same_bits(ltmd.read_exr(path), pixels[..., :3].astype(np.float16).astype(np.float32))
 
 
+def test_metadata_of_other_programs_need_not_be_utf8(tmp_path):
+    path = tmp_path / "picture.exr"
+    ltmd.write_exr(path, np.ones((2, 2, 3), np.float32), metadata={"comment": "Ballon XYZ"})
+    path.write_bytes(path.read_bytes().replace(b"Ballon XYZ", b"Ballon \xe9t\xe9"))
+    assert ltmd.exr_metadata(path)["comment"] == "Ballon \ufffdt\ufffd"
+
+
 def test_a_higher_convention_is_refused_in_words(tmp_path):
     path = tmp_path / "picture.exr"
     ltmd.write_exr(
