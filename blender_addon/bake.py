@@ -717,7 +717,6 @@ class LTMD_OT_bake(bpy.types.Operator):
 
     bl_idname = "ltmd.bake"
     bl_label = "Bake Tension"
-    bl_options = {"REGISTER"}
 
     objects: CollectionProperty(
         name="Objects",
@@ -797,14 +796,33 @@ class LTMD_OT_bake(bpy.types.Operator):
     )
 
     def execute(self, context):
-        return self._run(context, in_window=False)
+        # Also after the question of invoke().
+        return self._run(context, in_window=getattr(self, "asked", False))
 
-    def invoke(self, context, _event):
-        return self._run(context, in_window=not bpy.app.background)
+    def invoke(self, context, event):
+        if bpy.app.background:
+            return self._run(context, in_window=False)
+        try:
+            objects = self._objects(context)
+        except Refused:
+            objects = []
+        edits = [words for obj in objects for words in simulation.unkeyed_edits(obj, context.scene)]
+        if edits:
+            # A change of frame undoes them before anyone can read a warning.
+            self.asked = True
+            return context.window_manager.invoke_confirm(
+                self,
+                event,
+                title="Edits Without Keys",
+                message=f"Baking changes the frame, which undoes them: {', '.join(edits[:3])}",
+                confirm_text="Bake Anyway",
+                icon="WARNING",
+            )
+        return self._run(context, in_window=True)
 
     def _run(self, context, in_window):
-        if evaluate.is_running():
-            self.report({"ERROR"}, "A bake is running already")
+        if evaluate.is_running() or bpy.app.is_job_running("RENDER"):
+            self.report({"ERROR"}, "A bake or a render is running already")
             return {"CANCELLED"}
         bake = None
         try:
@@ -820,6 +838,8 @@ class LTMD_OT_bake(bpy.types.Operator):
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
         self._say_names(bake)
+        for words in bake.told:
+            self.report({"INFO"}, words)
         for warning in bake.warnings:
             self.report({"WARNING"}, warning)
         if bake.status != "ok":
@@ -928,7 +948,7 @@ def _finish_in_window(bake):
         bake.status = "refused"
     if bake.status == "ok" and bake.settings.switch:
         bpy.ops.ed.undo_push(message="Bake Tension")
-    lines = [*_summary(bake).splitlines(), *bake.warnings]
+    lines = [*_summary(bake).splitlines(), *bake.told, *bake.warnings]
     icon = "INFO" if bake.status == "ok" else "ERROR"
     for line in lines:
         print("LTMD:", line)

@@ -85,50 +85,71 @@ def _make_engine():
     return LtmdBake
 
 
-class _Session:
-    """The scene turned to our engine, and turned back."""
+# What a scene was before, kept in the scene itself: an undo step or an automatic save made while
+# frames are visited holds it too, and is put right when it comes back.
+_BEFORE = "ltmd_before_bake"
+_RENDER = ("engine", "use_compositing", "use_sequencer", "use_multiview", "use_single_layer")
 
-    RENDER = ("engine", "use_compositing", "use_sequencer", "use_multiview", "use_single_layer")
+
+def _take(scene):
+    before = {name: getattr(scene.render, name) for name in _RENDER}
+    before.update(frame=scene.frame_current, subframe=scene.frame_subframe)
+    scene[_BEFORE] = before
+    if scene.camera is None:
+        # A render without a camera is refused; any object will do.
+        scene.camera = bpy.data.objects.new(".ltmd camera", None)
+        scene.camera[_BEFORE] = True
+    # File Output nodes and sequencer strips must not act on a bake.
+    for name in _RENDER[1:]:
+        setattr(scene.render, name, False)
+    scene.render.engine = ENGINE
+
+
+def _give_back(scene):
+    before = scene.get(_BEFORE)
+    if before is None:
+        return
+    for name in _RENDER:
+        setattr(scene.render, name, before[name])
+    frame, subframe = before["frame"], before["subframe"]
+    del scene[_BEFORE]
+    if (scene.frame_current, scene.frame_subframe) != (frame, subframe):
+        scene.frame_set(frame, subframe=subframe)
+
+
+def _give_all_back():
+    for scene in bpy.data.scenes:
+        if scene.library is None:
+            _give_back(scene)
+    for obj in list(bpy.data.objects):
+        if obj.library is None and _BEFORE in obj:
+            bpy.data.objects.remove(obj)
+
+
+class _Session:
+    """A scene turned to our engine until end()."""
 
     def __init__(self, evaluation):
         global _current
         if _current is not None:
             raise RuntimeError("Another bake is running")
-        _current = evaluation
-        scene = _scene(evaluation.scene)
-        self.scene = evaluation.scene
-        self.camera = None
-        self.frame = (scene.frame_current, scene.frame_subframe)
-        self.render = {name: getattr(scene.render, name) for name in self.RENDER}
-        view = bpy.context.preferences.view
-        self.display = view.render_display_type
         self.engine = _make_engine()
         bpy.utils.register_class(self.engine)
-        if scene.camera is None:
-            # A render without a camera is refused; any object will do.
-            self.camera = bpy.data.objects.new(".ltmd camera", None)
-            scene.camera = self.camera
-            self.camera = self.camera.session_uid
+        _current = evaluation
+        view = bpy.context.preferences.view
+        self.display = view.render_display_type
         view.render_display_type = "NONE"
-        # File Output nodes and sequencer strips must not act on a bake.
-        for name in self.RENDER[1:]:
-            setattr(scene.render, name, False)
-        scene.render.engine = ENGINE
+        try:
+            _take(_scene(evaluation.scene))
+        except BaseException:
+            self.end()
+            raise
 
     def end(self):
         global _current
         _current = None
         bpy.context.preferences.view.render_display_type = self.display
-        scene = _scene(self.scene)
-        if scene is not None:
-            for name, value in self.render.items():
-                setattr(scene.render, name, value)
-            if (scene.frame_current, scene.frame_subframe) != self.frame:
-                scene.frame_set(self.frame[0], subframe=self.frame[1])
-        for obj in bpy.data.objects:
-            if self.camera is not None and obj.session_uid == self.camera:
-                bpy.data.objects.remove(obj)
-                break
+        _give_all_back()
         bpy.utils.unregister_class(self.engine)
 
 
@@ -171,3 +192,22 @@ def start(evaluation, done):
 
 def is_running():
     return _current is not None
+
+
+@bpy.app.handlers.persistent
+def _repair(*_):
+    if _current is None:
+        _give_all_back()
+
+
+_HANDLERS = (bpy.app.handlers.undo_post, bpy.app.handlers.redo_post, bpy.app.handlers.load_post)
+
+
+def register():
+    for handlers in _HANDLERS:
+        handlers.append(_repair)
+
+
+def unregister():
+    for handlers in _HANDLERS:
+        handlers.remove(_repair)
