@@ -44,7 +44,8 @@ lobe.inputs["Stretch"].default_value = .4
 lobe.inputs["Rotation"].default_value = .5
 lobe.inputs["Shear"].default_value = .3
 lobe.inputs["Roughness"].default_value = .55
-material.node_tree.links.new(lobe.outputs[0], material.node_tree.get_output_node("CYCLES").inputs[0])
+output = material.node_tree.get_output_node("CYCLES")
+material.node_tree.links.new(lobe.outputs[0], output.inputs[0])
 live = render()[..., :3]
 lobe.inputs["Strength"].default_value = 0
 rest = render()[..., :3]
