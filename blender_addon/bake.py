@@ -31,8 +31,8 @@ PASSES = ("tension",)
 CONVENTION = "1"
 # Shared texels hold one value for two places of the surface.
 MOST_OVERLAP = 0.001
-# A float32 UV at a tile border may lie a rounding below it.
-UV_TOLERANCE = 1e-5
+# Subdivision leaves UVs at a tile border a rounding beyond it, which must not open another tile.
+UV_ROUNDING = 2e-6
 # Relative; float32 matrices of an object that only turns differ by less.
 METRIC_TOLERANCE = 1e-5
 
@@ -263,7 +263,7 @@ class Bake:
             if mesh is None:
                 continue
             target.uv_map = target.uv_map or mesh.uv_map
-            target.tiles = tiles = [t for t in self._mesh(mesh).tiles if _tile_exists(t)]
+            target.tiles = tiles = list(self._mesh(target, mesh).tiles)
             for frame in sorted(target.todo):
                 paths = self._paths(target, tiles, frame)
                 if all(
@@ -416,20 +416,8 @@ class Bake:
             wanted = f' "{target.uv_map}"' if target.uv_map else ""
             raise Refused(f'"{target.name}" has no UV map{wanted} in the render: unwrap it')
         target.uv_map = arrays.uv_map
-        used = arrays.uv[arrays.triangles.ravel()]
-        if len(used) == 0:
-            raise Refused(f'"{target.name}" has no faces')
-        if not np.isfinite(used).all():
-            raise Refused(f'The UV map "{arrays.uv_map}" of "{target.name}" is not finite')
-        low, high = used.min(axis=0), used.max(axis=0)
-        if low.min() < -UV_TOLERANCE or high[0] > 10 + UV_TOLERANCE or high[1] > 100 + UV_TOLERANCE:
-            raise Refused(
-                f'The UV map "{arrays.uv_map}" of "{target.name}" leaves the UDIM range: u is '
-                f"{low[0]:.6g} to {high[0]:.6g} of 0 to 10, v is {low[1]:.6g} to {high[1]:.6g} of "
-                "0 to 100. Move the islands into it"
-            )
-        target.mesh = self._mesh(arrays)
-        target.tiles = [tile for tile in target.mesh.tiles if _tile_exists(tile)]
+        target.mesh = self._mesh(target, arrays)
+        target.tiles = list(target.mesh.tiles)
         report = self.ltmd.RestState(target.mesh, arrays.positions).report
         target.overlap = float(report.overlap_fraction)
         target.degenerate = int(report.degenerate_triangles)
@@ -444,10 +432,21 @@ class Bake:
                 f'{target.overlap:.1%} of the UV map "{arrays.uv_map}" of "{target.name}" overlaps'
             )
 
-    def _mesh(self, arrays):
-        return self.ltmd.Mesh(
-            arrays.triangles, arrays.corner_vert, arrays.uv, len(arrays.positions)
-        )
+    def _mesh(self, target, arrays):
+        uv = snapped(arrays.uv)
+        used = uv[arrays.triangles.ravel()]
+        if len(used) == 0:
+            raise Refused(f'"{target.name}" has no faces')
+        if not np.isfinite(used).all():
+            raise Refused(f'The UV map "{arrays.uv_map}" of "{target.name}" is not finite')
+        low, high = used.min(axis=0), used.max(axis=0)
+        if low.min() < 0 or high[0] > 10 or high[1] > 100:
+            raise Refused(
+                f'The UV map "{arrays.uv_map}" of "{target.name}" leaves the UDIM range: u is '
+                f"{low[0]:.6g} to {high[0]:.6g} of 0 to 10, v is {low[1]:.6g} to {high[1]:.6g} of "
+                "0 to 100. Move the islands into it"
+            )
+        return self.ltmd.Mesh(arrays.triangles, arrays.corner_vert, uv, len(arrays.positions))
 
     def _bakers_for(self, target, matrix):
         """Bakers whose rest state is measured in the metric of the object at this frame."""
@@ -599,6 +598,7 @@ class Bake:
         files = [path for target in self.targets for path in target.files if os.path.exists(path)]
         return {
             "status": self.status,
+            "version": getattr(getattr(self, "ltmd", None), "__version__", None),
             "folder": self.folder,
             "frames": sorted(set(self.settings.frames)),
             "files": files,
@@ -637,11 +637,6 @@ def _frozen_problem():
     )
 
 
-def _tile_exists(tile):
-    """Not the neighbours that a border UV touches by a rounding."""
-    return 0 <= tile[0] <= 9 and 0 <= tile[1] <= 99
-
-
 def naming_library(obj):
     return obj.library.filepath if obj.library is not None else ""
 
@@ -670,6 +665,12 @@ def metric_matrix(matrix_world):
     if np.abs(matrix.T @ matrix - np.eye(3)).max() <= METRIC_TOLERANCE:
         return None
     return matrix
+
+
+def snapped(uv):
+    """UVs with those next to a tile border moved onto it."""
+    border = np.rint(uv)
+    return np.where(np.abs(uv - border) < UV_ROUNDING, border, uv)
 
 
 def transformed(positions, matrix):

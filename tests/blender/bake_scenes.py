@@ -149,10 +149,12 @@ def bake(objects, frames, folder, **settings):
     from blender_addon import bake as baking
 
     stop = settings.pop("stop", None)
+    progress = settings.pop("progress", None)
     values = {"width": 64, "height": 64, "margin": 2, "folder": str(folder), **settings}
     scene = bpy.context.scene
     layer = baking.render_layer(scene, bpy.context.view_layer, objects)
-    work = baking.Bake(scene, layer, baking.Settings(list(objects), list(frames), **values))
+    settings = baking.Settings(list(objects), list(frames), **values)
+    work = baking.Bake(scene, layer, settings, progress)
     work.prepare()
     work.run(stop)
     work.finish()

@@ -96,6 +96,7 @@ def test_nothing_of_the_scene_is_changed(tmp_path):
                 [render.engine, render.use_sequencer, render.use_multiview, render.use_compositing],
                 bpy.context.preferences.view.render_display_type, scene.frame_current,
                 scene.camera is None, bpy.context.view_layer.objects.active.name,
+                sorted(scene.keys()),
             ]
 
         before = state()
@@ -121,6 +122,29 @@ def test_nothing_of_the_scene_is_changed(tmp_path):
     )
     assert got["status"] == ["ok", "failed"]
     assert got["after"] == [got["before"]] * 2
+
+
+def test_a_file_saved_in_mid_bake_opens_as_it_was_before(tmp_path):
+    # As an automatic save would; an undo step is put right the same way.
+    got = run(
+        """
+        from bake_scenes import *
+        obj = sheet()
+        scene = bpy.context.scene
+        scene.frame_set(7)
+        engine = scene.render.engine
+        path = ARGUMENTS + "/saved.blend"
+        bake([obj], [1, 2, 3], ARGUMENTS, progress=lambda frame, *_: frame == 2
+             and bpy.ops.wm.save_as_mainfile(filepath=path, copy=True))
+        bpy.ops.wm.open_mainfile(filepath=path)
+        scene = bpy.context.scene
+        report(same=scene.render.engine == engine and scene.camera is None,
+               frame=scene.frame_current, objects=[o.name for o in bpy.data.objects],
+               keys=list(scene.keys()))
+        """,
+        arguments=str(tmp_path),
+    )
+    assert got["same"] and got["frame"] == 7 and got["objects"] == ["Sheet"] and got["keys"] == []
 
 
 def test_nodes_that_only_move_points_are_left_out_of_the_rest_state(tmp_path):
