@@ -7,6 +7,8 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "ltmd/errors.h"
 #include "ltmd/tangent_frame.h"
@@ -57,34 +59,46 @@ IntRange whole_numbers(const Range& range, int begin, int end) {
     return {clamped(std::ceil(range.low)), clamped(std::floor(range.high) + 1)};
 }
 
-/// Lists of items per block, in the order of addition.
+/// An item's blocks in one row of blocks: columns [begin, end).
+struct Span {
+    std::int32_t item;
+    std::uint16_t begin, end;
+};
+
+/// Lists of spans per row of blocks, in the order of addition. Per row, not per block: a mesh whose
+/// every face fills the tile would need as many entries as it has triangles times blocks.
 class Bins {
 public:
-    explicit Bins(std::size_t block_count) : starts_(block_count + 1) {}
+    explicit Bins(int row_count) : starts_(static_cast<std::size_t>(row_count) + 1) {}
 
-    void add(std::size_t block, std::int32_t item) {
-        entries_.push_back({static_cast<std::uint32_t>(block), item});
-        ++starts_[block + 1];
+    void add(int row, std::int32_t item, const IntRange& columns) {
+        if (columns.begin >= columns.end) return;
+        entries_.push_back({{item, static_cast<std::uint16_t>(columns.begin),
+                             static_cast<std::uint16_t>(columns.end)},
+                            row});
+        ++starts_[static_cast<std::size_t>(row) + 1];
     }
     void build() {
         for (std::size_t b = 1; b < starts_.size(); ++b) starts_[b] += starts_[b - 1];
-        items_.resize(entries_.size());
+        spans_.resize(entries_.size());
         std::vector<std::size_t> next(starts_.begin(), starts_.end() - 1);
-        for (const Entry& entry : entries_) items_[next[entry.block]++] = entry.item;
+        for (const Entry& entry : entries_)
+            spans_[next[static_cast<std::size_t>(entry.row)]++] = entry.span;
         entries_ = {};
     }
-    std::span<const std::int32_t> operator[](std::size_t block) const {
-        return std::span(items_).subspan(starts_[block], starts_[block + 1] - starts_[block]);
+    std::span<const Span> operator[](int row) const {
+        const auto r = static_cast<std::size_t>(row);
+        return std::span(spans_).subspan(starts_[r], starts_[r + 1] - starts_[r]);
     }
 
 private:
     struct Entry {
-        std::uint32_t block;
-        std::int32_t item;
+        Span span;
+        int row;
     };
     std::vector<Entry> entries_;
     std::vector<std::size_t> starts_;
-    std::vector<std::int32_t> items_;
+    std::vector<Span> spans_;
 };
 
 std::size_t hash(const Point& p) {
@@ -153,8 +167,8 @@ public:
           margin_(margin),
           columns_((width + block_size - 1) / block_size),
           rows_((height + block_size - 1) / block_size),
-          triangle_bins_(block_count()),
-          edge_bins_(block_count()) {
+          triangle_bins_(rows_),
+          edge_bins_(rows_) {
         bin_triangles();
         if (margin_ >= 0) {
             find_border();
@@ -196,7 +210,7 @@ private:
     };
 
     struct Block {
-        std::size_t index;
+        int column, row;
         int x0, y0, x1, y1;
         std::size_t texel_count() const {
             return static_cast<std::size_t>(x1 - x0) * static_cast<std::size_t>(y1 - y0);
@@ -213,11 +227,14 @@ private:
             Buffers buffers;
             Counts sum;
             for (std::size_t b = begin; b < end; ++b) {
-                const int x0 =
-                    static_cast<int>(b % static_cast<std::size_t>(columns_)) * block_size;
-                const int y0 =
-                    static_cast<int>(b / static_cast<std::size_t>(columns_)) * block_size;
-                const Block block{b, x0, y0, std::min(x0 + block_size, width_),
+                const int column = static_cast<int>(b % static_cast<std::size_t>(columns_));
+                const int row = static_cast<int>(b / static_cast<std::size_t>(columns_));
+                const int x0 = column * block_size, y0 = row * block_size;
+                const Block block{column,
+                                  row,
+                                  x0,
+                                  y0,
+                                  std::min(x0 + block_size, width_),
                                   std::min(y0 + block_size, height_)};
                 const Counts counts = body(block, buffers);
                 sum.covered += counts.covered;
@@ -248,8 +265,19 @@ private:
     }
 
     /// The triangles with area that come within reach of the tile, into near_; of those, the ones
-    /// that may hold a centre, into bins.
+    /// that may hold a centre, into bins. Of triangles in one place (stacked copies, faces that all
+    /// fill the tile) the first two tell all.
     void bin_triangles() {
+        struct Place {
+            std::int32_t first;
+            bool twice;
+        };
+        std::vector<Place> places;
+        IndexTable table(mesh_.triangles.size());
+        const auto sorted = [](std::array<Point, 3> p) {
+            std::sort(p.begin(), p.end());
+            return p;
+        };
         const double far = margin_ >= 0 ? reach() : 0;
         for (std::size_t i = 0; i < mesh_.triangles.size(); ++i) {
             const Triangle& t = mesh_.triangles[i];
@@ -263,7 +291,18 @@ private:
                 return mesh_.corner_uv[static_cast<std::size_t>(t[static_cast<std::size_t>(k)])];
             };
             if (area2(p) == 0 || uv_area_sign(uv(0), uv(1), uv(2)) == 0) continue;
-            if (margin_ >= 0) near_.push_back(index);
+            std::int32_t& slot =
+                table.find_or_add(hash(p[0]) + hash(p[1]) + hash(p[2]), [&](std::int32_t place) {
+                    return sorted(points(places[static_cast<std::size_t>(place)].first)) ==
+                           sorted(p);
+                });
+            if (slot < 0) {
+                slot = static_cast<std::int32_t>(places.size());
+                places.push_back({index, false});
+                if (margin_ >= 0) near_.push_back(index);
+            } else if (std::exchange(places[static_cast<std::size_t>(slot)].twice, true)) {
+                continue;
+            }
 
             const IntRange rows = block_range({y_low, y_high}, rows_);
             for (int row = rows.begin; row < rows.end; ++row) {
@@ -276,8 +315,7 @@ private:
                         extend(x, x_range(p[k], p[(k + 1) % 3], band));
                     columns = block_range(x, columns_);
                 }
-                for (int column = columns.begin; column < columns.end; ++column)
-                    triangle_bins_.add(block_index(column, row), index);
+                triangle_bins_.add(row, index, columns);
             }
         }
         triangle_bins_.build();
@@ -287,11 +325,6 @@ private:
         if (other.empty()) return;
         range.low = std::min(range.low, other.low);
         range.high = std::max(range.high, other.high);
-    }
-
-    std::size_t block_index(int column, int row) const {
-        return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
-               static_cast<std::size_t>(column);
     }
 
     /// The blocks that [low, high] reaches into, with a little room for rounding.
@@ -386,9 +419,9 @@ private:
                 const Range band{double(row) * block_size - far,
                                  double(row + 1) * block_size + far};
                 const Range x = x_range(edge.a, edge.b, band);
-                const IntRange columns = block_range({x.low - far, x.high + far}, columns_);
-                for (int column = columns.begin; column < columns.end; ++column)
-                    edge_bins_.add(block_index(column, row), static_cast<std::int32_t>(i));
+                if (!x.empty())
+                    edge_bins_.add(row, static_cast<std::int32_t>(i),
+                                   block_range({x.low - far, x.high + far}, columns_));
             }
         }
         edge_bins_.build();
@@ -405,7 +438,10 @@ private:
                 std::fill(row + block.x0, row + block.x1, CoverageTexel{-1, 0, 0});
             }
         Counts counts;
-        for (const std::int32_t triangle : triangle_bins_[block.index]) {
+        std::size_t settled = 0;  // texels that nothing can change
+        for (const auto& [triangle, begin, end] : triangle_bins_[block.row]) {
+            if (block.column < begin || block.column >= end) continue;
+            if (settled == block.texel_count()) break;
             const std::array<Point, 3> p = points(triangle);
             const double area = area2(p), sign = area > 0 ? 1 : -1,
                          inverse_area = 1 / std::abs(area);
@@ -447,7 +483,8 @@ private:
                                 static_cast<float>(std::min(e1 * inverse_area, 1 - b0))};
                         }
                     } else if (strictly) {
-                        if (state == inside) ++counts.overlapping;
+                        counts.overlapping += state == inside;
+                        settled += state == inside;
                         state = state == on_border ? inside : inside_several;
                     }
                 }
@@ -458,8 +495,6 @@ private:
 
     /// The uncovered texels within reach of the border.
     void fill_margin(const Block& block, Buffers& buffers, CoverageTexel* texels) const {
-        const std::span<const std::int32_t> edges = edge_bins_[block.index];
-        if (edges.empty()) return;
         const double far = reach();
         const double far2 = margin_ > 0 ? far * far : 0.5;
         const bool only_met = margin_ == 0;
@@ -467,8 +502,9 @@ private:
             buffers.distance2[i] = buffers.state[i] == outside ? far2 : -1;
         if (only_met) std::fill(buffers.met.begin(), buffers.met.end(), std::uint8_t{0});
 
-        for (const std::int32_t e : edges) {
-            const BorderEdge& edge = border_[static_cast<std::size_t>(e)];
+        for (const auto& [item, begin, end] : edge_bins_[block.row]) {
+            if (block.column < begin || block.column >= end) continue;
+            const BorderEdge& edge = border_[static_cast<std::size_t>(item)];
             const Point &a = edge.a, &b = edge.b;
             const double dx = b.x - a.x, dy = b.y - a.y;
             const auto [y_low, y_high] = std::minmax(a.y, b.y);

@@ -309,6 +309,18 @@ TEST(TexelCoverage, TheLowestTriangleWins) {
     EXPECT_EQ(coverage.overlapping(), coverage.covered());
 }
 
+TEST(TexelCoverage, FacesThatAllFillTheTileCostLittle) {
+    // What resetting the UV map of a dense mesh gives: without care, hours.
+    Layout layout;
+    for (int i = 0; i < 100000; ++i) layout.add_quad({0, 0}, {1, 1});
+    for (int i = 0; i < 1000; ++i)
+        layout.add_quad({-0.001f * static_cast<float>(i), -1}, {1.1f, 2});
+    const TexelCoverage coverage(layout.view(), 1024, 1024, {}, 16);
+    EXPECT_EQ(coverage.covered(), 1024u * 1024u);
+    EXPECT_EQ(coverage.overlapping(), 1024u * 1024u);
+    for (const CoverageTexel& texel : coverage.texels()) ASSERT_LE(texel.triangle, 1);
+}
+
 TEST(TexelCoverage, ATouchedTexelIsCoveredWithoutMargin) {
     Layout layout;
     layout.add({0.02f, 0.02f}, {0.05f, 0.02f}, {0.02f, 0.05f});  // inside one texel, off its centre
