@@ -2,6 +2,7 @@
 #include "ltmd/texel_coverage.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <bit>
 #include <cmath>
@@ -207,6 +208,8 @@ private:
         std::vector<std::uint8_t> state = std::vector<std::uint8_t>(block_texels);
         std::vector<double> distance2 = std::vector<double>(block_texels);
         std::vector<std::uint8_t> met = std::vector<std::uint8_t>(block_texels);
+        std::array<IntRange, block_size>
+            open;  ///< Per row, the columns from the first to the last open texel.
     };
 
     struct Block {
@@ -495,13 +498,56 @@ private:
 
     /// The uncovered texels within reach of the border.
     void fill_margin(const Block& block, Buffers& buffers, CoverageTexel* texels) const {
-        const double far = reach();
-        const double far2 = margin_ > 0 ? far * far : 0.5;
-        const bool only_met = margin_ == 0;
-        for (std::size_t i = 0; i < block_texels; ++i)
-            buffers.distance2[i] = buffers.state[i] == outside ? far2 : -1;
-        if (only_met) std::fill(buffers.met.begin(), buffers.met.end(), std::uint8_t{0});
+        // Where charts are small and many, nearly every texel is settled by its close surroundings.
+        constexpr double close = 3;
+        if (reach() > 2 * close) {
+            if (!open_texels(block, buffers, texels, close * close)) return;
+            visit_edges(block, buffers, texels, close);
+        }
+        const double far2 = margin_ > 0 ? reach() * reach() : 0.5;
+        if (!open_texels(block, buffers, texels, far2)) return;
+        std::fill(buffers.met.begin(), buffers.met.end(), std::uint8_t{0});
+        visit_edges(block, buffers, texels, reach());
+        if (margin_ > 0) return;
+        for (int y = block.y0; y < block.y1; ++y)
+            for (int x = block.x0; x < block.x1; ++x) {
+                const std::size_t i = block.local(x, y);
+                if (buffers.state[i] == outside && !buffers.met[i])
+                    texels[index(x, y)] = {-1, 0, 0};
+            }
+    }
 
+    std::size_t index(int x, int y) const {
+        return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
+               static_cast<std::size_t>(x);
+    }
+
+    /// Texels without a triangle are open up to the distance, all others closed; false if none is
+    /// open.
+    bool open_texels(const Block& block, Buffers& buffers, const CoverageTexel* texels,
+                     double distance2) const {
+        bool any = false;
+        for (int y = block.y0; y < block.y1; ++y) {
+            const CoverageTexel* texel_row = texels + index(0, y);
+            IntRange& columns = buffers.open[static_cast<std::size_t>(y - block.y0)];
+            columns = {block.x1, block.x0};
+            double* distance_row = buffers.distance2.data() + block.local(block.x0, y);
+            for (int x = block.x0; x < block.x1; ++x) {
+                const bool is_open = texel_row[x].triangle < 0;
+                distance_row[x - block.x0] = is_open ? distance2 : -1;
+                if (!is_open) continue;
+                columns.begin = std::min(columns.begin, x);
+                columns.end = x + 1;
+                any = true;
+            }
+        }
+        return any;
+    }
+
+    /// Gives open texels the nearest point of the border edges within `far`.
+    void visit_edges(const Block& block, Buffers& buffers, CoverageTexel* texels,
+                     double far) const {
+        const bool only_met = margin_ == 0;
         for (const auto& [item, begin, end] : edge_bins_[block.row]) {
             if (block.column < begin || block.column >= end) continue;
             const BorderEdge& edge = border_[static_cast<std::size_t>(item)];
@@ -511,24 +557,26 @@ private:
             const IntRange rows =
                 whole_numbers({y_low - far - 0.5, y_high + far - 0.5}, block.y0, block.y1);
             for (int y = rows.begin; y < rows.end; ++y) {
+                const IntRange open = buffers.open[static_cast<std::size_t>(y - block.y0)];
+                if (open.begin >= open.end) continue;
                 const double py = y + 0.5;
                 const Range x = x_range(a, b, {py - far, py + far});
                 if (x.empty()) continue;
                 const IntRange xs =
-                    whole_numbers({x.low - far - 0.5, x.high + far - 0.5}, block.x0, block.x1);
-                CoverageTexel* texel_row =
-                    texels + static_cast<std::size_t>(y) * static_cast<std::size_t>(width_);
+                    whole_numbers({x.low - far - 0.5, x.high + far - 0.5}, open.begin, open.end);
+                CoverageTexel* texel_row = texels + index(0, y);
                 const std::size_t local = block.local(block.x0, y);
                 double* distance_row = buffers.distance2.data() + local;
                 std::uint8_t* met_row = buffers.met.data() + local;
                 for (int x_texel = xs.begin; x_texel < xs.end; ++x_texel) {
+                    double& best = distance_row[x_texel - block.x0];
+                    if (best < 0) continue;
                     const double px = x_texel + 0.5;
                     const double t = ((px - a.x) * dx + (py - a.y) * dy) * edge.inverse_length2;
                     const double qx = t <= 0 ? a.x : t >= 1 ? b.x : a.x + t * dx;
                     const double qy = t <= 0 ? a.y : t >= 1 ? b.y : a.y + t * dy;
                     const double distance2 = (px - qx) * (px - qx) + (py - qy) * (py - qy);
                     if (only_met && meets(edge, x_texel, y)) met_row[x_texel - block.x0] = 1;
-                    double& best = distance_row[x_texel - block.x0];
                     if (distance2 > best) continue;
                     const CoverageTexel candidate = texel_on(edge, t);
                     CoverageTexel& texel = texel_row[x_texel];
@@ -539,14 +587,6 @@ private:
                 }
             }
         }
-        if (!only_met) return;
-        for (int y = block.y0; y < block.y1; ++y)
-            for (int x = block.x0; x < block.x1; ++x) {
-                const std::size_t i = block.local(x, y);
-                if (buffers.state[i] == outside && !buffers.met[i])
-                    texels[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
-                           static_cast<std::size_t>(x)] = {-1, 0, 0};
-            }
     }
 
     /// The point at a + t (b - a) of a border edge, kept on the edge.
