@@ -46,6 +46,10 @@ def draw(layout, context):
         limits = source.live_limits(obj)
         if limits:
             sentence(layout, context, limits, icon="INFO")
+    elif obj.ltmd.source == "TEXTURE":
+        limits = source.texture_limits(obj, context.scene.frame_current)
+        if limits:
+            sentence(layout, context, limits, icon="INFO")
     if not is_writable(obj):
         sentence(layout, context, REFUSAL, icon="ERROR")
 

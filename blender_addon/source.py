@@ -21,6 +21,8 @@ MOVING = {
     "UV_PROJECT", "UV_WARP", "VERTEX_WEIGHT_EDIT", "VERTEX_WEIGHT_MIX",
     "VERTEX_WEIGHT_PROXIMITY", "VOLUME_DISPLACE", "WARP", "WAVE", "WEIGHTED_NORMAL",
 }  # fmt: skip
+LONGEST = 1048574  # Blender's highest frame
+FRAMES_KEY = "ltmd_frames"  # of an Image Texture node: first and last baked frame
 COPYING = {"ARRAY", "EDGE_SPLIT", "MASK", "MIRROR", "NODES", "TRIANGULATE"}
 
 
@@ -48,6 +50,16 @@ def live_limits(obj):
     if REST_ATTRIBUTE in obj.data.attributes:
         return "The modifiers have changed: press Set Up LTMD again"
     return "The deformation shows in final renders; the viewport shows this object at rest"
+
+
+def texture_limits(obj, frame):
+    """What the baked images cannot show at this frame, as a sentence, or None."""
+    for material in materials(obj):
+        for node in surface.our_nodes(material, "source"):
+            if FRAMES_KEY in node and not node[FRAMES_KEY][0] <= frame <= node[FRAMES_KEY][1]:
+                first, last = node[FRAMES_KEY]
+                return f"Frame {frame} is shown at rest: baked are the frames {first} to {last}"
+    return None
 
 
 def rest_positions(obj):
@@ -280,9 +292,11 @@ def _show_sequence(node, image, frames):
     node.interpolation = "Linear"
     node.projection = "FLAT"
     user = node.image_user
-    # The file's number is the scene's frame: start 1, no offset, a duration that never clips.
+    # The file's number is the scene's frame: start 1, no offset. With the longest duration a frame
+    # after the last is a missing file, which shows the rest state, and not the last file again.
     user.frame_start = 1
     user.frame_offset = 0
-    user.frame_duration = max(1, max(frames))
+    user.frame_duration = LONGEST
+    node[FRAMES_KEY] = [min(frames), max(frames)]
     user.use_cyclic = False
     user.use_auto_refresh = True

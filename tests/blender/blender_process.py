@@ -48,6 +48,8 @@ def run(source, *, arguments=None, addon=True, environment=None, timeout=300, ch
     with tempfile.TemporaryDirectory(prefix="ltmd_test_") as folder:
         script = Path(folder) / "script.py"
         answer = Path(folder) / "answer.json"
+        body = Path(folder) / "body.py"
+        body.write_text(textwrap.dedent(source))
         script.write_text(
             "import os, sys\n"
             f"sys.path.insert(0, {str(Path(__file__).parent)!r})\n"
@@ -55,8 +57,8 @@ def run(source, *, arguments=None, addon=True, environment=None, timeout=300, ch
             "from blender_process import _start, _stop\n"
             f"bpy, np, ARGUMENTS = _start({str(answer)!r}, {json.dumps(arguments)!r}, {addon!r})\n"
             "try:\n"
-            + textwrap.indent(textwrap.dedent(source).strip() + "\n", "    ")
-            + "except BaseException:\n    _stop(failed=True)\n_stop()\n"
+            f"    exec(compile(open({str(body)!r}).read(), {str(body)!r}, 'exec'))\n"
+            "except BaseException:\n    _stop(failed=True)\n_stop()\n"
         )
         env = dict(os.environ, BLENDER_USER_RESOURCES=str(Path(folder) / "user"))
         for name, value in (environment or {}).items():

@@ -298,20 +298,22 @@ scene.frame_end = 2000
 picture = next(n for n in tree.nodes if n.type == "TEX_IMAGE")
 stills = [render(frame)[2, 2, :3] for frame in frames]
 animated = [p[2, 2, :3] for p in render(animation_frames=frames)]
-missing = render(12)[2, 2, :3]
+missing = [render(frame)[2, 2, :3] for frame in (12, 1500)]
+limits = [source.texture_limits(obj, frame) for frame in (7, 1500)]
 bpy.ops.wm.save_mainfile()
 bpy.ops.wm.open_mainfile(filepath=bpy.data.filepath)
 reloaded = [render(frame)[2, 2, :3] for frame in frames]
 picture = next(n for n in bpy.data.materials["M"].node_tree.nodes if n.type == "TEX_IMAGE")
 report(expected=[(1 + f / 100, -f / 1000, 2 / (2 + f)) for f in frames], stills=stills,
-       animated=animated, reloaded=reloaded, missing=missing, path=picture.image.filepath,
-       data=picture.image.colorspace_settings.is_data, images=len(bpy.data.images))
+       animated=animated, reloaded=reloaded, missing=missing, limits=limits,
+       path=picture.image.filepath, data=picture.image.colorspace_settings.is_data, images=len(bpy.data.images))
 """,
         arguments=str(tmp_path),
     )
     for kind in ("stills", "animated", "reloaded"):
         assert np.abs(np.array(result[kind]) - result["expected"]).max() < 1e-5, result[kind]
-    assert np.allclose(result["missing"], (1, 0, 1), atol=1e-6)
+    assert np.allclose(result["missing"], (1, 0, 1), atol=1e-6)  # never another frame's file
+    assert result["limits"][0] is None and "baked are the frames 0 to 1001" in result["limits"][1]
     assert result["path"] == "//Plane_tension.0000.exr"
     assert result["data"]
 
