@@ -306,7 +306,8 @@ reloaded = [render(frame)[2, 2, :3] for frame in frames]
 picture = next(n for n in bpy.data.materials["M"].node_tree.nodes if n.type == "TEX_IMAGE")
 report(expected=[(1 + f / 100, -f / 1000, 2 / (2 + f)) for f in frames], stills=stills,
        animated=animated, reloaded=reloaded, missing=missing, limits=limits,
-       path=picture.image.filepath, data=picture.image.colorspace_settings.is_data, images=len(bpy.data.images))
+       path=picture.image.filepath, data=picture.image.colorspace_settings.is_data,
+       images=len(bpy.data.images))
 """,
         arguments=str(tmp_path),
     )
