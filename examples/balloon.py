@@ -141,9 +141,9 @@ def bake_cloth(obj, cloth):
     """An unbaked simulation depends on the frame it was started from; a baked one does not."""
     import bpy
 
+    gallery.say(f"simulating cloth, frames {FIRST} to {LAST}")
     with bpy.context.temp_override(object=obj, active_object=obj, point_cache=cloth.point_cache):
         bpy.ops.ptcache.bake(bake=True)
-    gallery.say(f"cloth simulated, frames {FIRST} to {LAST}")
 
 
 def main():

@@ -9,7 +9,7 @@ import matplotlib
 from PIL import Image, ImageDraw, ImageFont
 
 BACKDROP, INK, FAINT = (44, 48, 56), (240, 240, 240), (168, 174, 184)
-LABELS, TOP, BOTTOM, EDGE = 150, 96, 54, 14
+LABELS, TOP, BOTTOM, EDGE = 164, 96, 54, 14
 FONTS = Path(matplotlib.get_data_path()) / "fonts" / "ttf"
 
 

@@ -101,6 +101,7 @@ def studio(args, size, view, target, height, lights):
     scene.cycles.blur_glossy = 0
     scene.cycles.max_bounces = 1
     scene.cycles.sample_clamp_indirect = 1
+    scene.cycles.sample_clamp_direct = 10
     scene.render.resolution_x, scene.render.resolution_y = (round(args.scale * n) for n in size)
     scene.render.film_transparent = True
     scene.render.image_settings.file_format = "PNG"
@@ -195,12 +196,18 @@ def stretch_range(file):
     return float(stretch[:, 1].min()), float(stretch[:, 0].max())
 
 
+def stretch_words(low, high):
+    low, high = f"{low:.0%}", f"{high:.0%}"
+    return "no stretch" if low == high == "100%" else f"stretched to {low} – {high}"
+
+
 def bake(obj, args, first, last, size):
     """Sets LTMD up, bakes and turns the material to the images; the frame -> file dictionary."""
     import bpy
 
     select(obj)
     bpy.ops.ltmd.setup()
+    say(f"baking frames {first} to {last} into {size} x {size} images")
     began = time.perf_counter()
     folder = args.out / "tension"
     bpy.ops.ltmd.bake(frames=f"{first}-{last}", size=size, directory=str(folder))
@@ -209,7 +216,7 @@ def bake(obj, args, first, last, size):
     if missing:
         sys.exit(f"error: the bake left out {len(missing)} files, the first is {missing[0]}")
     seconds = time.perf_counter() - began
-    say(f"{len(files)} frames of {size} x {size} baked in {seconds:.1f} s into {folder}")
+    say(f"baked {len(files)} images in {seconds:.1f} s")
     return files
 
 
@@ -227,11 +234,12 @@ def select(obj):
     bpy.context.view_layer.objects.active = obj
 
 
-def render_row(args, row, frames):
+def render_row(args, row, frames, words):
     """One picture per frame; their paths."""
     import bpy
 
     scene = bpy.context.scene
+    say(f"rendering {len(frames)} frames, {words}")
     paths = []
     for frame in frames:
         scene.frame_set(frame)
@@ -239,7 +247,6 @@ def render_row(args, row, frames):
         scene.render.filepath = str(path)
         bpy.ops.render.render(write_still=True)
         paths.append(str(path))
-    say(f"row '{row}' rendered")
     return paths
 
 
@@ -258,10 +265,20 @@ def three_rows(obj, args, title, columns, files, first, last, lines=0):
         say(f"frame {frame:3d}, {caption}: principal stretch {low:.2f} to {high:.2f}")
     material = obj.active_material
     set_strength(material, 0)
-    rows = [("Plain material", "same roughness\neverywhere", render_row(args, "plain", frames))]
+    rows = [
+        (
+            "Plain material",
+            "same roughness\neverywhere",
+            render_row(args, "plain", frames, "plain material"),
+        )
+    ]
     set_strength(material, 1)
     rows.append(
-        ("With LTMD", "stretched: glossier\nsqueezed: duller", render_row(args, "ltmd", frames))
+        (
+            "With LTMD",
+            "stretched: glossier\nsqueezed: duller",
+            render_row(args, "ltmd", frames, "with LTMD"),
+        )
     )
     bpy.ops.wm.save_mainfile()
 
@@ -269,17 +286,14 @@ def three_rows(obj, args, title, columns, files, first, last, lines=0):
     scene.cycles.samples = 16
     rows.append(
         (
-            "Measured stretch",
-            "baked to float EXR,\none per frame",
-            render_row(args, "measured", frames),
+            "Measured",
+            "change of area, from\nthe baked images",
+            render_row(args, "measured", frames, "false colours"),
         )
     )
     sheet = {
         "title": title,
-        "columns": [
-            [caption, "stretched to {:.0%} – {:.0%}".format(*ranges[frame])]
-            for frame, caption in columns
-        ],
+        "columns": [[caption, stretch_words(*ranges[frame])] for frame, caption in columns],
         "rows": rows,
         "ramp": RAMP,
         "legend": ["a third of the area", "as at rest", "three times the area"],

@@ -46,7 +46,7 @@ def head():
     # Suzanne's own UV map overlaps; a bake needs one place per point of the surface.
     bpy.ops.object.mode_set(mode="EDIT")
     bpy.ops.mesh.select_all(action="SELECT")
-    bpy.ops.uv.smart_project(angle_limit=math.radians(66), island_margin=0.02)
+    bpy.ops.uv.smart_project(angle_limit=math.radians(50), island_margin=0.02)
     bpy.ops.object.mode_set(mode="OBJECT")
     bpy.ops.object.shade_smooth()
     return obj
@@ -153,6 +153,8 @@ def main():
     # The picture has a finer surface than the viewport; the bake has to measure the one rendered.
     subdivision = obj.modifiers.new("Subdivision", "SUBSURF")
     subdivision.levels, subdivision.render_levels = 1, 3
+    # The default folds small UV faces over at island borders.
+    subdivision.uv_smooth = "PRESERVE_CORNERS"
     obj.data.materials.append(gallery.paint("Paint", (0.03, 0.2, 0.85), 0.42, metallic=1))
     bpy.ops.wm.save_as_mainfile(filepath=str(args.out / "suzanne.blend"))
     files = gallery.bake(obj, args, FIRST, LAST, 1024)
