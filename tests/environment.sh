@@ -34,7 +34,7 @@ ltmd_quiet() {
 # Runs a function of this file alone in the cache, so that two test runs do not install over each other.
 ltmd_locked() {
     (
-        flock 9
+        flock -n 9 || { ltmd_say "waiting for another run that installs in $LTMD_CACHE" && flock 9; }
         "$@"
     ) 9>"$LTMD_CACHE/.lock"
 }

@@ -35,7 +35,7 @@ stage_cpp() {
     cmake --preset release "-DCMAKE_PREFIX_PATH=$LTMD_OPENEXR" && cmake --build --preset release
 }
 
-stage_ctest() { ctest --preset release --no-tests=error -j 2; }
+stage_ctest() { ctest --preset release --no-tests=error --timeout 300 -j 2; }
 
 # The wheel is tested with NumPy 2 beside the judges; inside Blender's Python it must load too.
 stage_wheel() {
@@ -58,7 +58,7 @@ pytest_of() {
     ltmd_wheel || return 1
     local options=(-q -rfEs --durations=5 -p no:cacheprovider)
     [ -z "$FAST" ] || options+=(-m "not slow")
-    "$LTMD_TOOLS/bin/python" -m pytest "${options[@]}" "$@"
+    timeout 1200 "$LTMD_TOOLS/bin/python" -m pytest "${options[@]}" "$@"
 }
 
 stage_python() { pytest_of tests/python; }
