@@ -123,6 +123,10 @@ def main(arguments):
     except SystemExit as ending:
         return ending.code or OK
     report = {"command": options.command, "status": "failed", "warnings": [], "problems": []}
+    if options.command == "bake":
+        # Readers find the same keys whatever happens.
+        report |= {"folder": "", "frames": [], "files": [], "skipped": [], "objects": []}
+        report |= {"seconds": 0.0, "verified": False}
     with _quiet_stdout(options.json) as out, _Stop() as stop:
         try:
             run = {"bake": _bake, "verify": _verify}[options.command]
@@ -245,7 +249,7 @@ def _print_report(options, report, out):
     if report["command"] == "verify":
         for name, numbers in report.get("sequences", {}).items():
             print(f"ltmd: {name}: {len(numbers)} frames, {numbers[0]} to {numbers[-1]}")
-    elif "files" in report:
+    elif report["files"] or report["skipped"]:
         print(
             f"ltmd: {len(report['files'])} files written, {len(report['skipped'])} kept, in "
             f"{report['folder']} ({report['seconds']:.1f} s)"

@@ -35,6 +35,9 @@ def _package():
 
 
 def main():
+    if importlib.util.find_spec("bpy") is None:
+        print("ltmd: this Python has no bpy: run the script inside Blender", file=sys.stderr)
+        return 1
     # Blender's own arguments end at "--"; a plain Python has none of them.
     end = sys.argv.index("--") if "--" in sys.argv else 0
     command = importlib.import_module(f"{_package().__name__}.command")
