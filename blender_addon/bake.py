@@ -176,6 +176,8 @@ class Bake:
                 f'"{obj.name}" is of type {obj.type.lower()}, only meshes can be baked: convert it '
                 "to a mesh"
             )
+        if obj.data.is_editmode:
+            return f'"{obj.name}" is in Edit Mode: leave it first'
         hidden = hidden_reason(scene, view_layer, obj)
         if hidden:
             return f'"{obj.name}" is not in the render: {hidden}'
@@ -226,8 +228,6 @@ class Bake:
             requests = {}
             for target in self.targets:
                 obj = self._find(bpy.data.objects, target.uid)
-                if obj.mode == "EDIT":
-                    obj.update_from_editmode()
                 if target.spec.mode != "frame":
                     requests[target.uid] = (obj, target.spec, target.uv_map)
                 if self.settings.resume:

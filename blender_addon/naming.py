@@ -17,11 +17,15 @@ def file_stem(name, library="", others=()):
 
     A safe name stays as it is; every other one gets a short hash of its true name, so that two
     different names never share a file. `others` are the (name, library) of the objects of the file:
-    the same name from another library, or in other letter case, is told apart too.
+    the same name in other letter case is told apart too, and that of linked objects from the one of
+    the file's own, which keeps it.
     """
     safe = _UNSAFE.sub("_", name)[:_LONGEST]
-    twins = [other for other in others if tuple(other) != (name, library)]
-    ambiguous = any(other.casefold() == name.casefold() for other, _ in twins)
+    ambiguous = any(
+        other.casefold() == name.casefold()
+        for other, origin in others
+        if (other, origin) != (name, library) and (library or other != name)
+    )
     if safe == name and not ambiguous and not _HASHED.search(name) and not _is_device(name):
         return name
     digest = hashlib.sha256(f"{name}\0{library}".encode()).hexdigest()[:6]

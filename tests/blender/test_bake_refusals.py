@@ -6,6 +6,7 @@ from blender_process import run
 
 CASES = {
     "hidden": ("Refused", "disabled in renders"),
+    "edit mode": ("Refused", "Edit Mode"),
     "hidden collection": ("Refused", "collection is disabled in renders"),
     "excluded": ("Refused", "excluded from the view layer"),
     "unused layer": ("Refused", "not used for rendering"),
@@ -56,6 +57,10 @@ def answers(tmp_path_factory):
         obj.hide_render = True
         case("hidden", obj)
         obj.hide_render = False
+
+        bpy.ops.object.mode_set(mode="EDIT")
+        case("edit mode", obj)
+        bpy.ops.object.mode_set(mode="OBJECT")
 
         collection = bpy.data.collections.new("Group")
         scene.collection.children.link(collection)

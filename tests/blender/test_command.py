@@ -225,4 +225,8 @@ def test_file_names():
     others = [("Ball", ""), ("ball", ""), ("Ball", "//lib.blend")]
     stems = [naming.file_stem(*pair, others) for pair in others]
     assert len({s.lower() for s in stems}) == 3
+    # An override keeps its name beside the linked object it overrides.
+    others = [("Ball", ""), ("Ball", "//lib.blend"), ("Ball", "//other.blend")]
+    stems = [naming.file_stem(*pair, others) for pair in others]
+    assert stems[0] == "Ball" and len(set(stems)) == 3
     assert [naming.file_stem(*pair, others) for pair in others] == stems
