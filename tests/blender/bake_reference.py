@@ -81,8 +81,12 @@ def texels(rest, corner_values, size, tile=(0, 0)):
     return hits == 1, values
 
 
-def tolerance(rest):
-    """Of T from float32 positions: their rounding against the shortest edge, with room for sums."""
+# The inputs are the same float32 positions, so only the arithmetic differs.
+TOLERANCE = 1e-6
+
+
+def rounded_tolerance(rest):
+    """Where positions are rounded on the way: their rounding against the shortest edge."""
     p = np.asarray(rest["positions"], float)[np.asarray(rest["corner_vert"])[rest["triangles"]]]
     shortest = np.linalg.norm(p - np.roll(p, 1, axis=1), axis=2).min()
-    return 16 * np.finfo(np.float32).eps * np.abs(p).max() / shortest
+    return 2 * np.finfo(np.float32).eps * np.abs(p).max() / shortest

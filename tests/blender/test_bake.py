@@ -9,14 +9,16 @@ import pytest
 from blender_process import run
 
 
-def assert_texels(path, rest, deformed, size, tile=(0, 0), least=100):
+def assert_texels(
+    path, rest, deformed, size, tile=(0, 0), least=100, tolerance=reference.TOLERANCE
+):
     mask, expected = reference.texels(rest, reference.corner_tension(rest, deformed), size, tile)
     pixels = reference.read(path)
     assert pixels.shape == (size, size, 4)
     assert (pixels[..., 3] == 1).all()
     assert mask.sum() >= least
     error = np.abs(pixels[..., :3] - expected)[mask].max()
-    limit = reference.tolerance(rest) * np.abs(expected[mask]).max()
+    limit = tolerance * np.abs(expected[mask]).max()
     assert error <= limit, f"{path}: {error:.2e} > {limit:.2e}"
     return expected[mask]
 
@@ -154,7 +156,9 @@ def test_object_scale_is_not_stretch(tmp_path):
     differ = []
     for frame, deformed in got["frames"].items():
         path = tmp_path / f"Sheet_tension.{int(frame):04d}.exr"
-        expected = assert_texels(path, got["rest"], deformed, 64, least=3000)
+        # The add-on rounds the turned and scaled positions to float32.
+        tolerance = reference.rounded_tolerance(got["rest"])
+        expected = assert_texels(path, got["rest"], deformed, 64, least=3000, tolerance=tolerance)
         plain = reference.corner_tension(got["rest"], {**deformed, "matrix": np.eye(3)})
         differ.append(np.abs(expected[0] - plain[0]).max())
     # Uneven scale does change the tension of a sheared shape: the metric matters.

@@ -10,7 +10,7 @@ def assert_image(path, rest, deformed):
     mask, expected = reference.texels(rest, reference.corner_tension(rest, deformed), 64)
     error = np.abs(reference.read(path)[..., :3] - expected)[mask].max()
     assert mask.sum() > 500
-    assert error <= reference.tolerance(rest) * max(1.0, np.abs(expected).max())
+    assert error <= reference.TOLERANCE * max(1.0, np.abs(expected).max())
 
 
 def test_rest_by_frame_and_by_object(tmp_path):
