@@ -17,9 +17,9 @@ struct VerifyReport {
     bool ok() const { return problems.empty(); }
 };
 
-/// Checks every baked sequence in a folder: files named `<sequence>.<frame of 4 to 9 digits>.exr`
-/// with `ltmd:convention`. Others are not ours and ignored, unless they have such a name and are
-/// unreadable.
+/// Checks every baked sequence in a folder: files named `<sequence>.<frame>.exr` (a frame of 4 to 9
+/// characters: 0007, or -007 before 0) with `ltmd:convention`. Others are not ours and ignored,
+/// unless they have such a name and are unreadable.
 ///
 /// Each frame is present (a missing one would render as the identity) and once, has the number that
 /// its header states, and can be read whole; all frames of a sequence have one size and one
