@@ -136,7 +136,8 @@ ltmd_openexr_into() {
         -DCMAKE_INSTALL_LIBDIR=lib -DBUILD_TESTING=OFF -DOPENEXR_BUILD_TOOLS=OFF -DOPENEXR_INSTALL_TOOLS=OFF
         -DOPENEXR_BUILD_EXAMPLES=OFF -DOPENEXR_INSTALL_DOCS=OFF)
     ltmd_imath_source "$work" || return 1
-    ltmd_quiet "$LTMD_TOOLS/bin/python" -m pip download --no-deps --no-build-isolation -d "$work" \
+    # pip configures the source to learn its version, by default with make, which may be missing.
+    CMAKE_GENERATOR=Ninja ltmd_quiet "$LTMD_TOOLS/bin/python" -m pip download --no-deps --no-build-isolation -d "$work" \
         --no-binary OpenEXR "OpenEXR==$LTMD_OPENEXR_VERSION" || return 1
     (cd "$work" && echo "$LTMD_OPENEXR_SHA256  openexr-$LTMD_OPENEXR_VERSION.tar.gz" |
         sha256sum --check --quiet -) >&2 || return 1
