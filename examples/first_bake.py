@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-import numpy as np
-
 import ltmd
+import numpy as np
 
 uv = np.array([[0, 0], [1, 0], [1, 1], [0, 1]], np.float32)
 triangles = np.array([[0, 1, 2], [0, 2, 3]], np.int32)
