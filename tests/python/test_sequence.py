@@ -17,7 +17,9 @@ FRAMES = range(1, 8)
 
 @pytest.fixture
 def shape():
-    return meshes.sphere(12, 8)
+    """A sphere whose chart leaves background on all sides."""
+    sphere = meshes.sphere(12, 8)
+    return sphere.with_(corner_uv=(sphere.corner_uv * 0.6 + 0.2).astype(np.float32))
 
 
 def deformed(shape, frame):
@@ -70,6 +72,7 @@ def test_frames_are_single_bakes_bit_for_bit(per, shape, tmp_path):
                 margin=4,
                 background=background,
             )
+            assert (expected[0, 0] == background).all()
             pixels = ltmd.read_exr(name(tmp_path, frame, what))
             assert pixels.shape == (64, 64, 4)
             assert (pixels[..., 3] == 1).all()
