@@ -10,7 +10,6 @@ import os
 import tempfile
 import threading
 import time
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 
 import bpy
@@ -486,22 +485,18 @@ class Bake:
             raise WriteFailure(str(failure)) from None
 
     def _conclude(self):
-        """Waits for the writers and reads every written file back."""
+        """Waits for the writers and checks every written file."""
         for target in self.targets:
             self._close(target)
-            found = [
-                (path, target, tile, frame)
-                for frame in sorted(target.todo)
-                for tile, files in self._paths(target, target.tiles, frame).items()
+            if not target.todo:
+                continue
+            names = {
+                os.path.basename(path)[: -len(".0000.exr")]
+                for files in self._paths(target, target.tiles, 0).values()
                 for path in files.values()
-            ]
-            with ThreadPoolExecutor(max_workers=min(4, os.cpu_count() or 1)) as readers:
-                whole = list(readers.map(lambda file: self._is_finished(*file), found))
-            self.problems += [
-                f"{path} is not the file that was written"
-                for (path, *_), good in zip(found, whole, strict=True)
-                if not good
-            ]
+            }
+            found = self.ltmd.verify(self.folder, sorted(target.todo), sorted(names))
+            self.problems += found.problems
 
     def _metadata(self, target, tile):
         settings = self.settings

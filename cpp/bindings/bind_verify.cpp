@@ -21,16 +21,19 @@ void bind_verify(py::module_& module) {
         });
     module.def(
         "verify",
-        [](py::handle directory, const std::optional<std::vector<int>>& frames) {
+        [](py::handle directory, const std::optional<std::vector<int>>& frames,
+           const std::optional<std::vector<std::string>>& sequences) {
             const std::string folder = parse_path(directory);
             py::gil_scoped_release release;
-            return verify(folder, frames.value_or(std::vector<int>{}));
+            return verify(folder, frames.value_or(std::vector<int>{}),
+                          sequences.value_or(std::vector<std::string>{}));
         },
-        "directory"_a, "frames"_a = py::none(),
-        R"(Check every baked sequence in a folder -> VerifyReport.
+        "directory"_a, "frames"_a = py::none(), "sequences"_a = py::none(),
+        R"(Check baked sequences in a folder -> VerifyReport.
 
 Every frame present (a missing one would render as the identity), one size, finite, tension's diagonal in [1e-3, 1e3],
-A = 1, one convention. frames: those expected; by default the range that the files state. Raises OSError for an unreadable folder.)");
+A = 1, one convention. frames: those expected, the only ones looked at; by default the range that the files state.
+sequences: names such as 'balloon_tension' or 'balloon_tension.1001'; by default all. Raises OSError for an unreadable folder.)");
 }
 
 }  // namespace ltmd::python

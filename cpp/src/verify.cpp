@@ -68,7 +68,8 @@ std::string size_text(std::array<int, 2> size) {
 
 class Check {
 public:
-    explicit Check(const std::string& directory) : directory_(directory) {
+    Check(const std::string& directory, const std::vector<std::string>& only)
+        : directory_(directory), only_(only.begin(), only.end()) {
         const fs::path folder = utf8_path(directory);
         std::error_code error;
         if (!fs::is_directory(folder, error))
@@ -86,18 +87,24 @@ public:
     }
 
     VerifyReport run(const std::vector<int>& frames) {
+        const std::set<int> expected(frames.begin(), frames.end());
         for (auto& [name, sequence] : sequences_) {
             // A broken file alone may be anyone's.
             if (std::none_of(sequence.begin(), sequence.end(),
                              [](const auto& f) { return f.second.metadata.has_value(); }))
                 continue;
-            for (const auto& [frame, file] : sequence) report_.sequences[name].push_back(frame);
-            check_frames(name, sequence, frames);
+            if (!expected.empty())
+                std::erase_if(sequence, [&](const auto& f) { return !expected.contains(f.first); });
+            std::vector<int>& found = report_.sequences[name];
+            for (const auto& [frame, file] : sequence) found.push_back(frame);
+            check_frames(name, sequence, expected);
             check_alike(name, sequence);
             for (const auto& [frame, file] : sequence) check_file(name, frame, file);
         }
-        if (report_.sequences.empty())
+        if (report_.sequences.empty() && only_.empty())
             problem(directory_, "holds no baked sequence (files such as balloon_tension.0001.exr)");
+        for (const std::string& name : only_)
+            if (!report_.sequences.contains(name)) problem(name, "has no file: bake it");
         return std::move(report_);
     }
 
@@ -112,7 +119,7 @@ private:
 
     void add(const std::string& name) {
         const std::optional<FrameName> parsed = parse(name);
-        if (!parsed) return;
+        if (!parsed || (!only_.empty() && !only_.contains(parsed->sequence))) return;
         File file{name, {}, {}};
         try {
             file.metadata = exr_metadata(path(name));
@@ -131,10 +138,9 @@ private:
 
     /// Names the missing ones of `expected` frames, runs of neighbours together.
     void check_frames(const std::string& name, const Sequence& sequence,
-                      const std::vector<int>& frames) {
+                      const std::set<int>& expected) {
         std::vector<std::pair<int, int>> missing;  // first and last of each run
-        if (!frames.empty()) {
-            const std::set<int> expected(frames.begin(), frames.end());
+        if (!expected.empty()) {
             bool in_run = false;
             for (const int frame : expected) {
                 const bool absent = !sequence.contains(frame);
@@ -181,6 +187,7 @@ private:
         const auto first = std::find_if(sequence.begin(), sequence.end(), [](const auto& f) {
             return f.second.metadata.has_value();
         });
+        if (first == sequence.end()) return;
         for (auto it = std::next(first); it != sequence.end(); ++it) {
             const auto& [frame, file] = *it;
             if (!file.metadata) continue;
@@ -277,14 +284,16 @@ private:
     }
 
     std::string directory_;
+    std::set<std::string> only_;
     std::map<std::string, Sequence> sequences_;
     VerifyReport report_;
 };
 
 }  // namespace
 
-VerifyReport verify(const std::string& directory, const std::vector<int>& frames) {
-    return Check(directory).run(frames);
+VerifyReport verify(const std::string& directory, const std::vector<int>& frames,
+                    const std::vector<std::string>& sequences) {
+    return Check(directory, sequences).run(frames);
 }
 
 }  // namespace ltmd::inline v0

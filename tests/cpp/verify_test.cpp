@@ -176,6 +176,21 @@ TEST(Verify, NeedsTheChannels) {
                   "a: frame 1 has no channels R, G, B, so it holds no tension: bake it again"}));
 }
 
+TEST(Verify, LooksAtTheNamedSequencesAndFramesAlone) {
+    const TemporaryFolder folder;
+    const Metadata ours = {{"ltmd:convention", "1"}, {"ltmd:pass", "tension"}};
+    const std::vector<std::string> channels = {"R", "G", "B", "A"};
+    const std::vector<float> good = {1, 0, 1, 1}, bad = {0, 0, 1, 1};
+    write_exr(folder / "a.0001.exr", good, 1, 1, channels, Compression::zip, ours);
+    write_exr(folder / "a.0002.exr", bad, 1, 1, channels, Compression::zip, ours);
+    write_exr(folder / "b.0001.exr", bad, 1, 1, channels, Compression::zip, ours);
+    EXPECT_EQ(verify(folder.string()).problems.size(), 2u);
+    EXPECT_EQ(verify(folder.string(), {}, {"a"}).problems.size(), 1u);
+    EXPECT_TRUE(verify(folder.string(), {1}, {"a"}).ok());
+    EXPECT_EQ(verify(folder.string(), {1}, {"a", "c"}).problems,
+              Problems{"c: has no file: bake it"});
+}
+
 TEST(Verify, AFolderWithoutSequences) {
     const TemporaryFolder folder;
     const VerifyReport report = verify(folder.string());
