@@ -64,7 +64,9 @@ void deformation_tensor(const RestState& rest, std::span<const Vec3f> deformed,
         for (std::size_t i = begin; i < end; ++i)
             faces[i] = data.state[i] == TriangleState::no_area
                            ? Face{}
-                           : deformed_face(data.vertices[i], deformed, data.inverse_rest[i]);
+                           : deformed_face(data.vertices[i], deformed,
+                                           {data.inverse_rest[0][i], data.inverse_rest[1][i],
+                                            data.inverse_rest[2][i], data.inverse_rest[3][i]});
     });
     parallel_for(data.vertex_count, grain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t vertex = begin; vertex < end; ++vertex) {
@@ -83,7 +85,7 @@ void deformation_tensor(const RestState& rest, std::span<const Vec3f> deformed,
                 const bool flat = normal.length2() == 0;
                 const V3d eu = flat ? face.eu : turn(face.eu, face.normal, normal);
                 const V3d ev = flat ? face.ev : turn(face.ev, face.normal, normal);
-                const double area = data.area[triangle];
+                const double area = data.weight[triangle];
                 constexpr int row[6] = {0, 1, 2, 0, 0, 1}, column[6] = {0, 1, 2, 1, 2, 2};
                 for (int k = 0; k < 6; ++k)
                     sum[k] += area * (eu[row[k]] * eu[column[k]] + ev[row[k]] * ev[column[k]]);

@@ -34,8 +34,9 @@ void prepare_triangles(const MeshView& mesh, std::span<const Vec3f> positions,
                        RestState::Data& data) {
     const std::size_t count = mesh.triangles.size();
     data.vertices.resize(count);
-    data.inverse_rest.resize(count);
-    data.area.resize(count);
+    for (auto& entry : data.inverse_rest) entry.resize(count);
+    data.weight.resize(count);
+    std::vector<double> area(count);
     data.state.resize(count);
     parallel_for(count, grain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
@@ -46,7 +47,7 @@ void prepare_triangles(const MeshView& mesh, std::span<const Vec3f> positions,
             const V3d e1 = to_double(positions[vertex[1]]) - p0,
                       e2 = to_double(positions[vertex[2]]) - p0;
             const V3d cross = e1.cross(e2);
-            data.area[i] = static_cast<float>(0.5 * cross.length());
+            area[i] = cross.length();
             if (has_no_area(e1, e2, cross)) {
                 data.state[i] = TriangleState::no_area;
                 continue;
@@ -66,9 +67,16 @@ void prepare_triangles(const MeshView& mesh, std::span<const Vec3f> positions,
             const V3d y = z.cross(x);
             const double r11 = e1.dot(x), r12 = e2.dot(x), r21 = e1.dot(y), r22 = e2.dot(y);
             const double det = r11 * r22 - r12 * r21;
-            data.inverse_rest[i] = {r22 / det, -r12 / det, -r21 / det, r11 / det};
+            data.inverse_rest[0][i] = r22 / det;
+            data.inverse_rest[1][i] = -r12 / det;
+            data.inverse_rest[2][i] = -r21 / det;
+            data.inverse_rest[3][i] = r11 / det;
         }
     });
+    // Relative to the largest, so that meshes of any scale keep their weights.
+    const double largest = count ? *std::max_element(area.begin(), area.end()) : 0;
+    for (std::size_t i = 0; i < count; ++i)
+        data.weight[i] = largest > 0 ? static_cast<float>(area[i] / largest) : 0.0f;
 }
 
 TriangleLists triangles_of_vertices(const RestState::Data& data) {
@@ -193,7 +201,9 @@ RestState::RestState(const MeshView& mesh, std::span<const Vec3f> positions)
     data.has_uv = mesh.has_uv();
     prepare_triangles(mesh, positions, data);
     data.vertex_triangles = triangles_of_vertices(data);
-    for (TriangleState state : data.state) {
+    for (std::size_t i = 0; i < data.state.size(); ++i) {
+        const TriangleState state = data.state[i];
+        if (state != TriangleState::regular) data.irregular.push_back(static_cast<std::int32_t>(i));
         data.report.degenerate_triangles += state == TriangleState::no_area;
         data.report.no_uv_triangles += data.has_uv && state == TriangleState::no_uv;
     }

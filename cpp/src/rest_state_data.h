@@ -35,9 +35,11 @@ struct RestState::Data {
 
     // Per triangle.
     std::vector<std::array<std::int32_t, 3>> vertices;
-    std::vector<std::array<double, 4>> inverse_rest;  ///< R^-1, row-major.
-    std::vector<float> area;
+    std::array<std::vector<double>, 4> inverse_rest;  ///< R^-1: xx, xy, yx, yy, each on its own.
+    std::vector<float> weight;                        ///< Rest area as a part of the largest.
     std::vector<TriangleState> state;
+    std::vector<std::int32_t>
+        irregular;  ///< Triangles that are not TriangleState::regular, sorted.
 
     TriangleLists vertex_triangles;        ///< All triangles of each vertex.
     TriangleLists fans;                    ///< The triangles of each UV fan.

@@ -28,13 +28,18 @@ struct Gram {
     double c11, c12, c22, root_det;
 };
 
+/// Whether both singular values are in the stretch range, from the trace and determinant of their
+/// squares: sufficient, and true of nearly every face.
+inline bool is_in_stretch_range(double trace, double det) {
+    return (trace <= max_stretch * max_stretch) & (det >= min_stretch * min_stretch * trace) &
+           (det > 0);
+}
+
 /// Clamps the eigenvalues of a Gram matrix to the squares of the stretch range.
 inline Gram clamp_stretch(Gram c) {
     const double trace = c.c11 + c.c22;
     const double det = c.root_det * c.root_det;
-    // Sufficient for both singular values to be in range, and true of nearly every face.
-    if (trace <= max_stretch * max_stretch && det >= min_stretch * min_stretch * trace && det > 0)
-        return c;
+    if (is_in_stretch_range(trace, det)) return c;
     const double difference = std::hypot(c.c11 - c.c22, 2 * c.c12);
     const double largest = 0.5 * (trace + difference);
     const double smallest = largest > 0 ? det / largest : 0;
