@@ -49,7 +49,7 @@ margin, take the nearest point of the nearest face of this UV layout. Raises Val
         .def_property_readonly("covered", &TexelCoverage::covered,
                                "Texel centres in at least one face.")
         .def_property_readonly("overlapping", &TexelCoverage::overlapping,
-                               "Texel centres in more than one face.")
+                               "Texel centres strictly inside more than one face.")
         .def_property_readonly(
             "triangle",
             [](const TexelCoverage& coverage) {

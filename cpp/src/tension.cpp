@@ -15,7 +15,7 @@
 namespace ltmd::inline v0 {
 namespace {
 
-constexpr std::size_t grain = 1 << 14;
+constexpr std::size_t grain = 1 << 12;
 constexpr int block_size = 256;
 
 // The widest vectors the machine has. Contraction is off, so all give the same bits.
