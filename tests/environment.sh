@@ -8,8 +8,12 @@ LTMD_CACHE=${LTMD_CACHE:-${XDG_CACHE_HOME:-$HOME/.cache}/ltmd}
 LTMD_OPENEXR=${LTMD_OPENEXR:-$LTMD_CACHE/openexr}
 LTMD_TOOLS=$LTMD_CACHE/venv-tools
 LTMD_BPY=$LTMD_CACHE/venv-bpy4.5
+# Blender's two long-term versions; the first one serves examples and benchmarks.
+LTMD_BLENDERS=(4.5 5.2)
+LTMD_PYTHON313=$LTMD_CACHE/python3.13
 LTMD_OPENEXR_VERSION=3.5.3
 LTMD_OPENEXR_SHA256=5645cc5493802832860a715ceb621139b44ee867084cec1501a2b8685e40d88a
+LTMD_WHEELS=()
 export LTMD_ROOT LTMD_CACHE LTMD_OPENEXR LTMD_TOOLS LTMD_BPY
 export PIP_DISABLE_PIP_VERSION_CHECK=1 PIP_ROOT_USER_ACTION=ignore
 mkdir -p "$LTMD_CACHE"
@@ -49,10 +53,11 @@ ltmd_as_root() {
     fi
 }
 
+# ltmd_python 3.11: the path of such a Python.
 ltmd_python() {
     local candidate
-    for candidate in "${LTMD_PYTHON:-}" python3.11 python3; do
-        if [ -n "$candidate" ] && "$candidate" -c 'import sys; sys.exit(sys.version_info[:2] != (3, 11))' 2>/dev/null; then
+    for candidate in "${LTMD_PYTHON:-}" "$LTMD_CACHE/python$1/bin/python$1" "python$1" python3; do
+        if [ -n "$candidate" ] && "$candidate" -c 'import sys; sys.exit("%d.%d" % sys.version_info[:2] != sys.argv[1])' "$1" 2>/dev/null; then
             command -v "$candidate"
             return
         fi
@@ -65,19 +70,14 @@ ltmd_python_is_complete() {
 assert os.path.exists(os.path.join(sysconfig.get_path("include"), "Python.h"))' 2>/dev/null
 }
 
-ltmd_system_packages() {
-    local wanted missing=() package python
-    wanted=(g++ cmake ninja-build libgtest-dev ca-certificates
-        libsm6 libice6 libxrender1 libxi6 libxfixes3 libxxf86vm1 libxkbcommon0 libgl1 libegl1)
-    python=$(ltmd_python) || wanted+=(python3.11)
-    if [ -z "${python:-}" ] || ! ltmd_python_is_complete "$python"; then
-        wanted+=(python3.11-venv python3.11-dev)
-    fi
+# ltmd_packages NAME…: installs these packages of Debian 12.
+ltmd_packages() {
+    local missing=() package
     if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
-        ltmd_say "no apt here: these packages of Debian 12, or their like, are taken as given: ${wanted[*]}"
+        ltmd_say "no apt here: these packages of Debian 12, or their like, are taken as given: $*"
         return
     fi
-    for package in "${wanted[@]}"; do
+    for package in "$@"; do
         [ "$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null || true)" = installed ] || missing+=("$package")
     done
     [ ${#missing[@]} -gt 0 ] || return 0
@@ -86,11 +86,22 @@ ltmd_system_packages() {
     ltmd_quiet ltmd_as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends "${missing[@]}"
 }
 
-# ltmd_venv NAME: $LTMD_CACHE/venv-NAME with exactly the pins of tests/requirements-NAME.txt.
+ltmd_system_packages() {
+    local wanted python
+    wanted=(g++ cmake ninja-build libgtest-dev ca-certificates
+        libsm6 libice6 libxrender1 libxi6 libxfixes3 libxxf86vm1 libxkbcommon0 libgl1 libegl1)
+    python=$(ltmd_python 3.11) || wanted+=(python3.11)
+    if [ -z "${python:-}" ] || ! ltmd_python_is_complete "$python"; then
+        wanted+=(python3.11-venv python3.11-dev)
+    fi
+    ltmd_packages "${wanted[@]}"
+}
+
+# ltmd_venv NAME PYTHON: $LTMD_CACHE/venv-NAME with exactly the pins of tests/requirements-NAME.txt.
 ltmd_venv() {
     local venv=$LTMD_CACHE/venv-$1 pins=$LTMD_ROOT/tests/requirements-$1.txt python
     ! cmp -s "$pins" "$venv/.ltmd-pins" || return 0
-    python=$(ltmd_python) || ltmd_fail "Python 3.11 was not found; set LTMD_PYTHON" || return 1
+    python=$(ltmd_python "$2") || ltmd_fail "Python $2 was not found; set LTMD_PYTHON" || return 1
     ltmd_say "preparing $venv"
     if ! "$venv/bin/python" -c pass 2>/dev/null; then
         rm -rf "$venv"
@@ -100,12 +111,21 @@ ltmd_venv() {
     cp "$pins" "$venv/.ltmd-pins"
 }
 
-ltmd_venv_tools() { ltmd_locked ltmd_venv tools; }
-ltmd_venv_blender() { ltmd_locked ltmd_venv bpy4.5; }
+ltmd_venv_tools() { ltmd_locked ltmd_venv tools 3.11; }
 
-# Debian's Imath source, by the machine's own package lists.
-ltmd_imath_source() {
-    local codename uri list=$1/imath.list
+# ltmd_venv_blender [VERSION]
+ltmd_venv_blender() {
+    case "${1:-4.5}" in
+        4.5) ltmd_locked ltmd_venv bpy4.5 3.11 ;;
+        5.2) ltmd_locked ltmd_python313_build && ltmd_locked ltmd_venv bpy5.2 3.13 ;;
+        *) ltmd_fail "no Blender $1 here, only ${LTMD_BLENDERS[*]}" ;;
+    esac
+}
+
+# ltmd_debian_source PACKAGE SUITE FOLDER: unpacks the package's upstream source, from the mirror
+# that the machine's own package lists name.
+ltmd_debian_source() {
+    local package=$1 suite=$2 work=$3 uri list=$3/source.list codename
     # shellcheck source=/dev/null
     codename=$(. /etc/os-release && echo "${VERSION_CODENAME:-}")
     ltmd_repository() {
@@ -117,14 +137,38 @@ ltmd_imath_source() {
         ltmd_quiet ltmd_as_root apt-get update
         uri=$(ltmd_repository)
     fi
-    [ -n "$uri" ] || ltmd_fail "no Debian repository of '$codename' main is set up here; build static, hidden, position-independent Imath and OpenEXR yourself and set LTMD_OPENEXR to their prefix" || return 1
-    echo "deb-src $uri $codename main" >"$list"
-    mkdir -p "$1/lists/partial" "$1/archives/partial"
+    [ -n "$uri" ] || ltmd_fail "no Debian repository of '$codename' main is set up here, so the source of $package cannot be fetched" || return 1
+    echo "deb-src $uri ${suite:-$codename} main" >"$list"
+    mkdir -p "$work/lists/partial" "$work/archives/partial"
     local apt=(apt-get -o "Dir::Etc::SourceList=$list" -o Dir::Etc::SourceParts=/dev/null
-        -o "Dir::State::Lists=$1/lists" -o "Dir::Cache=$1" -o "APT::Sandbox::User=$(id -un)")
-    (cd "$1" && ltmd_quiet "${apt[@]}" update &&
-        ltmd_quiet "${apt[@]}" source --download-only imath) || return 1
-    tar -xf "$(find "$1" -name 'imath_*.orig.tar.*' ! -name '*.asc')" -C "$1"
+        -o "Dir::State::Lists=$work/lists" -o "Dir::Cache=$work" -o "APT::Sandbox::User=$(id -un)")
+    (cd "$work" && ltmd_quiet "${apt[@]}" update &&
+        ltmd_quiet "${apt[@]}" source --download-only "$package") || return 1
+    tar -xf "$(find "$work" -name '*.orig.tar.*' ! -name '*.asc')" -C "$work"
+}
+
+ltmd_python313_into() {
+    local prefix=$1 work=$2 source
+    ltmd_debian_source python3.13 trixie "$work" || return 1
+    source=$(find "$work" -maxdepth 1 -name 'Python-3.13*')
+    cd "$source" || return 1
+    ltmd_quiet ./configure -q "--prefix=$prefix" --with-ensurepip=install --disable-test-modules || return 1
+    ltmd_quiet make -s "-j$(nproc)" && ltmd_quiet make -s install
+}
+
+# Blender 5.2's Python, which Debian 12 does not have.
+ltmd_python313_build() {
+    local work status=0
+    ! ltmd_python_is_complete "$(ltmd_python 3.13)" || return 0
+    ltmd_packages gcc make xz-utils libssl-dev libffi-dev zlib1g-dev libbz2-dev liblzma-dev libsqlite3-dev || return 1
+    ltmd_say "building Python 3.13 in $LTMD_PYTHON313 (three to five minutes)"
+    work=$(mktemp -d) || return 1
+    rm -rf "$LTMD_PYTHON313"
+    (ltmd_python313_into "$LTMD_PYTHON313" "$work") || status=1
+    rm -rf "$work"
+    [ "$status" -eq 0 ] && ltmd_python_is_complete "$LTMD_PYTHON313/bin/python3.13" && return
+    rm -rf "$LTMD_PYTHON313"
+    ltmd_fail "Python 3.13 was not built; install one with its headers, or name it with LTMD_PYTHON"
 }
 
 ltmd_openexr_into() {
@@ -135,7 +179,8 @@ ltmd_openexr_into() {
         -DCMAKE_VISIBILITY_INLINES_HIDDEN=ON "-DCMAKE_INSTALL_PREFIX=$prefix" "-DCMAKE_PREFIX_PATH=$prefix"
         -DCMAKE_INSTALL_LIBDIR=lib -DBUILD_TESTING=OFF -DOPENEXR_BUILD_TOOLS=OFF -DOPENEXR_INSTALL_TOOLS=OFF
         -DOPENEXR_BUILD_EXAMPLES=OFF -DOPENEXR_INSTALL_DOCS=OFF)
-    ltmd_imath_source "$work" || return 1
+    ltmd_debian_source imath "" "$work" ||
+        ltmd_fail "build static, hidden, position-independent Imath and OpenEXR yourself and set LTMD_OPENEXR to their prefix" || return 1
     # pip configures the source to learn its version, by default with make, which may be missing.
     CMAKE_GENERATOR=Ninja ltmd_quiet "$LTMD_TOOLS/bin/python" -m pip download --no-deps --no-build-isolation -d "$work" \
         --no-binary OpenEXR "OpenEXR==$LTMD_OPENEXR_VERSION" || return 1
@@ -174,44 +219,59 @@ ltmd_hash() {
     )
 }
 
+# The Pythons that get a wheel: the tools' 3.11, which Blender 4.5 has too, and Blender 5.2's.
+ltmd_wheel_venvs() {
+    echo "$LTMD_TOOLS"
+    [ ! -e "$LTMD_CACHE/venv-bpy5.2/.ltmd-pins" ] || echo "$LTMD_CACHE/venv-bpy5.2"
+}
+
 ltmd_wheel_build() {
-    local hash folder wheel venv
+    local hash folder wheel venv tag venvs
     hash=$(ltmd_hash pyproject.toml CMakeLists.txt README.md LICENSE cmake cpp)
     folder=$LTMD_CACHE/wheels-$hash
-    if ! compgen -G "$folder/pyltmd-*.whl" >/dev/null; then
-        ltmd_say "building the wheel"
-        rm -rf "$folder" "$folder.partial"
-        CMAKE_PREFIX_PATH=$LTMD_OPENEXR ltmd_quiet "$LTMD_TOOLS/bin/python" -m pip wheel \
+    mapfile -t venvs < <(ltmd_wheel_venvs)
+    for venv in "${venvs[@]}"; do
+        tag=$(ltmd_tag "$venv") || return 1
+        ! compgen -G "$folder/pyltmd-*-$tag-*.whl" >/dev/null || continue
+        ltmd_say "building the wheel for $tag"
+        rm -rf "$folder.partial"
+        CMAKE_PREFIX_PATH=$LTMD_OPENEXR ltmd_quiet "$venv/bin/python" -m pip wheel \
             --no-build-isolation --no-deps -w "$folder.partial" "$LTMD_ROOT" || { rm -rf "$folder.partial" && return 1; }
-        mv "$folder.partial" "$folder"
+        mkdir -p "$folder"
+        mv "$folder.partial"/*.whl "$folder"
+        rm -rf "$folder.partial"
         find "$LTMD_CACHE" -maxdepth 1 -name 'wheels-*' -mtime +3 -exec rm -rf {} +
-    fi
-    wheel=$(compgen -G "$folder/pyltmd-*.whl")
-    for venv in "$LTMD_TOOLS" "$LTMD_BPY"; do
-        [ -x "$venv/bin/python" ] || continue
+    done
+    for venv in "$LTMD_TOOLS" "$LTMD_CACHE"/venv-bpy*; do
+        [ -e "$venv/.ltmd-pins" ] || continue
         [ "$(cat "$venv/.ltmd-wheel" 2>/dev/null)" != "$hash" ] || continue
+        wheel=$(compgen -G "$folder/pyltmd-*-$(ltmd_tag "$venv")-*.whl")
         ltmd_say "installing $(basename "$wheel") in $(basename "$venv")"
         rm -f "$venv/.ltmd-wheel"
         ltmd_quiet "$venv/bin/python" -m pip install --no-deps --no-index --force-reinstall "$wheel" || return 1
         echo "$hash" >"$venv/.ltmd-wheel"
     done
-    echo "$wheel"
+    compgen -G "$folder/pyltmd-*.whl"
 }
 
-# Sets LTMD_WHEEL to the wheel of the checkout's sources and installs it in both environments.
+# ltmd_tag VENV: cp311 or cp313.
+ltmd_tag() { "$1/bin/python" -c 'import sys; print("cp%d%d" % sys.version_info[:2])'; }
+
+# Sets LTMD_WHEELS to the wheels of the checkout's sources and installs them in every environment.
 ltmd_wheel() {
-    LTMD_WHEEL=$(ltmd_locked ltmd_wheel_build) || return 1
-    export LTMD_WHEEL
+    local found
+    found=$(ltmd_locked ltmd_wheel_build) || return 1
+    mapfile -t LTMD_WHEELS <<<"$found"
 }
 
-# Sets LTMD_EXTENSION_ZIP to the Blender extension with that wheel in it.
+# Sets LTMD_EXTENSION_ZIP to the Blender extension with those wheels in it.
 ltmd_extension() {
-    [ -n "${LTMD_WHEEL:-}" ] || ltmd_wheel || return 1
-    LTMD_EXTENSION_ZIP=$LTMD_CACHE/extension-$(ltmd_hash blender_addon osl pyproject.toml CMakeLists.txt cpp)/ltmd.zip
+    [ ${#LTMD_WHEELS[@]} -gt 0 ] || ltmd_wheel || return 1
+    LTMD_EXTENSION_ZIP=$LTMD_CACHE/extension-$(ltmd_hash blender_addon osl pyproject.toml CMakeLists.txt cmake cpp)-${#LTMD_WHEELS[@]}/ltmd.zip
     export LTMD_EXTENSION_ZIP
     [ ! -e "$LTMD_EXTENSION_ZIP" ] || return 0
     ltmd_say "building the extension"
     mkdir -p "$(dirname "$LTMD_EXTENSION_ZIP")"
     find "$LTMD_CACHE" -maxdepth 1 -name 'extension-*' -mtime +3 -exec rm -rf {} +
-    ltmd_quiet "$LTMD_BPY/bin/python" "$LTMD_ROOT/blender_addon/build_extension.py" "$LTMD_WHEEL" -o "$LTMD_EXTENSION_ZIP"
+    ltmd_quiet "$LTMD_BPY/bin/python" "$LTMD_ROOT/blender_addon/build_extension.py" "${LTMD_WHEELS[@]}" -o "$LTMD_EXTENSION_ZIP"
 }

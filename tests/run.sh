@@ -2,21 +2,31 @@
 # SPDX-License-Identifier: Apache-2.0
 # Installs what is missing, builds everything and runs every test. All stages run even if one fails;
 # the exit code is then 1.
-#   tests/run.sh [--fast] [STAGE…]
-# --fast takes the installed tools as they are and leaves out the tests marked slow.
-# Stages: environment cpp ctest wheel extension format python osl blender (default: all, in this order).
+#   tests/run.sh [--fast | --long] [STAGE…]
+# --fast takes the installed tools as they are and leaves out the tests marked slow. --long adds the
+# stages sanitizers… (tests/long.sh) and window (a real Blender window).
+# Stages: environment cpp ctest wheel extension format python osl4.5 osl5.2 blender4.5 blender5.2 both
+# (default: all, in this order); osl and blender name both versions.
 set -uo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.." || exit 1
 # shellcheck source=tests/environment.sh
 . tests/environment.sh
 
-ALL=(environment cpp ctest wheel extension format python osl blender)
+ALL=(environment cpp ctest wheel extension format python osl4.5 osl5.2 blender4.5 blender5.2 both)
+LONG=(long window)
 FAST=
 STAGES=()
 for argument in "$@"; do
-    case " ${ALL[*]} --fast " in
-        *" $argument "*) [ "$argument" = --fast ] && FAST=1 || STAGES+=("$argument") ;;
-        *) ltmd_fail "unknown argument '$argument'; usage: tests/run.sh [--fast] [${ALL[*]}]" || exit 2 ;;
+    case "$argument" in
+        --fast) FAST=1 ;;
+        --long) ALL+=("${LONG[@]}") ;;
+        osl | blender) for version in "${LTMD_BLENDERS[@]}"; do STAGES+=("$argument$version"); done ;;
+        *)
+            case " ${ALL[*]} ${LONG[*]} " in
+                *" $argument "*) STAGES+=("$argument") ;;
+                *) ltmd_fail "unknown argument '$argument'; usage: tests/run.sh [--fast | --long] [${ALL[*]}]" || exit 2 ;;
+            esac
+            ;;
     esac
 done
 [ ${#STAGES[@]} -gt 0 ] || STAGES=("${ALL[@]}")
@@ -28,7 +38,7 @@ stage_environment() {
     if [ -n "$FAST" ]; then
         return 0
     fi
-    ltmd_system_packages && ltmd_venv_tools && ltmd_venv_blender && ltmd_openexr
+    ltmd_system_packages && ltmd_venv_tools && ltmd_venv_blender 4.5 && ltmd_venv_blender 5.2 && ltmd_openexr
 }
 
 stage_cpp() {
@@ -39,7 +49,11 @@ stage_ctest() { ctest --preset release --no-tests=error --timeout 300 -j 2; }
 
 # The wheel is tested with NumPy 2 beside the judges; inside Blender's Python it must load too.
 stage_wheel() {
-    ltmd_wheel && "$LTMD_BPY/bin/python" -c 'import bpy, ltmd, numpy; print("ltmd", ltmd.__version__, "with bpy", bpy.app.version_string, "and NumPy", numpy.__version__)'
+    local version
+    ltmd_wheel || return 1
+    for version in "${LTMD_BLENDERS[@]}"; do
+        "$LTMD_CACHE/venv-bpy$version/bin/python" -c 'import bpy, ltmd, numpy; print("ltmd", ltmd.__version__, "with bpy", bpy.app.version_string, "and NumPy", numpy.__version__)' || return 1
+    done
 }
 
 stage_extension() { ltmd_extension && ls -l "$LTMD_EXTENSION_ZIP"; }
@@ -62,8 +76,18 @@ pytest_of() {
 }
 
 stage_python() { pytest_of tests/python; }
-stage_osl() { ltmd_extension && pytest_of tests/osl; }
-stage_blender() { ltmd_extension && pytest_of tests/blender; }
+pytest_in() { ltmd_extension && LTMD_BLENDER=$1 pytest_of "$2"; }
+stage_osl4.5() { pytest_in 4.5 tests/osl; }
+stage_osl5.2() { pytest_in 5.2 tests/osl; }
+stage_blender4.5() { pytest_in 4.5 tests/blender; }
+stage_blender5.2() { pytest_in 5.2 tests/blender; }
+stage_both() { ltmd_extension && pytest_of tests/both; }
+
+stage_long() {
+    [ ! -e tests/long.sh ] || bash tests/long.sh
+}
+
+stage_window() { ltmd_extension && bash tests/window/run.sh; }
 
 TABLE=()
 STATUS=0
@@ -82,7 +106,7 @@ done
 printf '\n===== stages\n'
 printf '%s\n' "${TABLE[@]}"
 # The closing lines of the runners, in their own words.
-for stage in ctest python osl blender; do
+for stage in ctest python osl4.5 osl5.2 blender4.5 blender5.2 both; do
     [ -e "$LOGS/$stage" ] || continue
     printf '%s: %s\n' "$stage" "$(grep -E 'tests? (passed|failed)|[0-9]+ (passed|failed|error|skipped|deselected).* in |no tests ran' "$LOGS/$stage" | tail -n 1)"
 done

@@ -22,26 +22,30 @@ ROOT = Path(__file__).resolve().parents[2]
 # ---- parent -------------------------------------------------------------------------------------
 
 
-def blender_python():
-    """The Python that has bpy: LTMD_BPY_PYTHON, this one, or the cache's."""
-    named = os.environ.get("LTMD_BPY_PYTHON")
-    if named:
-        return named
-    import importlib.util
+def blender_version():
+    """The Blender to test: LTMD_BLENDER, by default 4.5."""
+    return os.environ.get("LTMD_BLENDER") or "4.5"
 
-    if importlib.util.find_spec("bpy"):
-        return sys.executable
+
+def blender_python(blender=None):
+    """A Python that has bpy: of that version, or LTMD_BPY_PYTHON, or as LTMD_BLENDER says."""
+    named = os.environ.get("LTMD_BPY_PYTHON")
+    if named and not blender:
+        return named
     cache = os.environ.get("LTMD_CACHE") or os.path.join(
         os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache"), "ltmd"
     )
-    return os.path.join(cache, "venv-bpy4.5", "bin", "python")
+    return os.path.join(cache, f"venv-bpy{blender or blender_version()}", "bin", "python")
 
 
-def run(source, *, arguments=None, addon=True, environment=None, timeout=300, check=True):
+def run(
+    source, *, arguments=None, addon=True, environment=None, timeout=300, check=True, blender=None
+):
     """Run `source` in a child; return what it gave to report() as a dict.
 
     arguments: JSON values, seen there as ARGUMENTS. addon: load the add-on from the source tree.
     environment: changes to the environment (None removes a variable).
+    blender: a version, other than the one under test.
     check: a child that fails raises AssertionError with its output. The dict always holds "_code"
     (exit status) and "_output" (stdout and stderr together).
     """
@@ -67,7 +71,7 @@ def run(source, *, arguments=None, addon=True, environment=None, timeout=300, ch
             else:
                 env[name] = value
         done = subprocess.run(
-            [blender_python(), str(script)],
+            [blender_python(blender), str(script)],
             env=env,
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
