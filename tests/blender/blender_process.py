@@ -65,6 +65,8 @@ def run(
             "except BaseException:\n    _stop(failed=True)\n_stop()\n"
         )
         env = dict(os.environ, BLENDER_USER_RESOURCES=str(Path(folder) / "user"))
+        if blender:
+            env["LTMD_BLENDER"] = blender
         for name, value in (environment or {}).items():
             if value is None:
                 env.pop(name, None)
@@ -102,6 +104,9 @@ def _start(answer_path, arguments, addon):
 
     # Without it a Script node finds no oslquery and gets no sockets.
     bpy.utils.expose_bundled_modules()
+    wanted = os.environ.get("LTMD_BLENDER")
+    if wanted and not bpy.app.version_string.startswith(wanted):
+        raise RuntimeError(f"Blender {bpy.app.version_string} runs instead of {wanted}")
     empty_scene()
     if addon:
         load_addon()
