@@ -11,7 +11,15 @@ Compression parse_compression(const std::string& name) {
     if (name == "none") return Compression::none;
     if (name == "zips") return Compression::zips;
     if (name == "zip") return Compression::zip;
-    throw py::value_error("compression is '" + name + "'; it must be 'none', 'zips' or 'zip'");
+    if (name == "piz") return Compression::piz;
+    throw py::value_error("compression is '" + name +
+                          "'; it must be 'none', 'zips', 'zip' or 'piz'");
+}
+
+Precision parse_precision(bool half, std::optional<int> mantissa_bits) {
+    const Precision precision{half, mantissa_bits.value_or(full_mantissa)};
+    validate(precision);
+    return precision;
 }
 
 std::string parse_path(py::handle path) {
@@ -41,7 +49,8 @@ void bind_exr(py::module_& module) {
         "write_exr",
         [](py::handle path, py::handle pixels,
            const std::optional<std::vector<std::string>>& channels, const std::string& compression,
-           const py::dict& metadata) {
+           bool half, std::optional<int> mantissa_bits, const py::dict& metadata) {
+            const Precision precision = parse_precision(half, mantissa_bits);
             auto image = require<float>(pixels, "pixels", {-1, -1, -1});
             std::vector<std::string> names;
             if (channels) {
@@ -72,14 +81,16 @@ void bind_exr(py::module_& module) {
                       width = static_cast<int>(image.shape(1));
             const auto values = items<float>(image);
             py::gil_scoped_release release;
-            write_exr(file, values, width, height, names, codec, attributes);
+            write_exr(file, values, width, height, names, codec, attributes, precision);
         },
         "path"_a, "pixels"_a, py::kw_only(), "channels"_a = py::none(), "compression"_a = "zip",
-        "metadata"_a = py::dict(),
-        R"(Write float32[height, width, channels], row 0 = top, as a 32-bit float OpenEXR file.
+        "half"_a = false, "mantissa_bits"_a = py::none(), "metadata"_a = py::dict(),
+        R"(Write float32[height, width, channels], row 0 = top, as a float OpenEXR file.
 
 channels: names, one per channel. By default 1 channel is Y, 4 are R, G, B, A, and 3 are R, G, B with A = 1 added, because
-Blender needs a finite alpha. compression: 'none', 'zips' or 'zip'. metadata: dict of header attributes, written as text.
+Blender needs a finite alpha. compression: 'none', 'zips', 'zip' or 'piz', all lossless. half: 16-bit float (10 mantissa bits, at most 65504).
+mantissa_bits: round to nearest even at 1 to 23 bits, a relative error up to 2^-(bits+1), so that files compress better;
+None keeps all. Finite values stay finite. metadata: dict of header attributes, written as text.
 The file appears only when complete (temporary file, then rename). Raises OSError with the path, ValueError, TypeError.)");
     module.def(
         "read_exr",

@@ -21,14 +21,20 @@ void bind_sequence_baker(py::module_& module) {
         module, "SequenceBaker",
         R"(Bakes the frames of an animation into EXR files; compressing and writing overlap with the next frame.
 
-mesh: Mesh with a UV map. rest: RestState, or float32[V, 3]. width, height: texels. passes: 'tension' (t11, t12, t22) and
-'stretch'. margin: 0 to 64 texels. tile: (u, v). per: 'corner', 'vertex' or 'triangle'. compression: 'none', 'zips', 'zip'.
-metadata: header attributes of every file. in_flight: frames of pixels held at most, 1 to 16.
-Files are RGBA, 32-bit float, A = 1. Use as a context manager: leaving it finishes, or cancels after an exception.)")
+mesh: Mesh with a UV map. rest: RestState, or float32[V, 3]. width, height: texels. passes: of ltmd.passes: 'tension'
+(t11, t12, t22), 'stretch', 'wrinkle', 'alpha2' and 'roughness', each computed where `per` says and then interpolated.
+alpha, M0, strength, height_response: the lobe of alpha2 and roughness, as in ltmd.alpha2.
+margin: 0 to 64 texels. tile: (u, v). per: 'corner', 'vertex' or 'triangle'. compression, half, mantissa_bits: as in
+ltmd.write_exr. metadata: header attributes of every file. in_flight: frames of pixels held at most, 1 to 16.
+Files are RGBA, A = 1 (in the pass roughness A is data). Use as a context manager: leaving it finishes, or cancels after an exception.)")
         .def(py::init([](const std::shared_ptr<Mesh>& mesh, py::handle rest, int width, int height,
                          const std::vector<std::string>& passes, int margin, py::handle tile,
                          const std::string& per, const std::string& compression,
-                         const py::dict& metadata, int in_flight) {
+                         const py::dict& metadata, int in_flight, bool half,
+                         std::optional<int> mantissa_bits, py::handle alpha, py::handle m0,
+                         double strength, double height_response) {
+                 const Precision precision = parse_precision(half, mantissa_bits);
+                 const Lobe lobe = parse_lobe(alpha, m0, strength, height_response);
                  auto prepared = prepare(mesh, rest);
                  const SequenceOptions options{passes,
                                                margin,
@@ -36,7 +42,9 @@ Files are RGBA, 32-bit float, A = 1. Use as a context manager: leaving it finish
                                                parse_per(per),
                                                parse_compression(compression),
                                                parse_metadata(metadata),
-                                               in_flight};
+                                               in_flight,
+                                               precision,
+                                               lobe};
                  const MeshView view = mesh->view();
                  py::gil_scoped_release release;
                  return std::unique_ptr<Baker>(new Baker{
@@ -45,7 +53,9 @@ Files are RGBA, 32-bit float, A = 1. Use as a context manager: leaving it finish
              "mesh"_a, "rest"_a, "width"_a, "height"_a,
              "passes"_a = std::vector<std::string>{"tension"}, py::kw_only(), "margin"_a = 16,
              "tile"_a = py::make_tuple(0, 0), "per"_a = "corner", "compression"_a = "zip",
-             "metadata"_a = py::dict(), "in_flight"_a = 2)
+             "metadata"_a = py::dict(), "in_flight"_a = 2, "half"_a = false,
+             "mantissa_bits"_a = py::none(), "alpha"_a = 0.5, "M0"_a = py::none(),
+             "strength"_a = 1.0, "height_response"_a = 0.0)
         .def(
             "frame",
             [](Baker& self, py::handle deformed, const py::dict& paths, const py::dict& metadata) {

@@ -9,6 +9,7 @@
 
 #include "arrays.h"
 #include "ltmd/exr.h"
+#include "ltmd/lobe_parameters.h"
 #include "ltmd/mesh_view.h"
 #include "ltmd/rest_state.h"
 #include "ltmd/tension.h"
@@ -36,6 +37,9 @@ std::shared_ptr<const PreparedRest> prepare(const std::shared_ptr<const Mesh>& m
 
 Per parse_per(const std::string& name);
 Compression parse_compression(const std::string& name);
+Precision parse_precision(bool half, std::optional<int> mantissa_bits);
+/// alpha: a number or two; m0: None or 2x2. Throws as validate().
+Lobe parse_lobe(py::handle alpha, py::handle m0, double strength, double height_response);
 Tile parse_tile(py::handle tile);
 std::string parse_path(py::handle path);
 /// A dict of str; numbers are written as text.
@@ -45,6 +49,7 @@ void bind_mesh_view(py::module_& module);
 void bind_rest_state(py::module_& module);
 void bind_tension(py::module_& module);
 void bind_deformation_tensor(py::module_& module);
+void bind_lobe_parameters(py::module_& module);
 void bind_texel_coverage(py::module_& module);
 void bind_exr(py::module_& module);
 void bind_sequence_baker(py::module_& module);

@@ -21,6 +21,7 @@ PYBIND11_MODULE(_ltmd, module) {
     bind_rest_state(module);
     bind_tension(module);
     bind_deformation_tensor(module);
+    bind_lobe_parameters(module);
     bind_texel_coverage(module);
     bind_exr(module);
     bind_sequence_baker(module);

@@ -17,9 +17,13 @@
 #include <ImfStringAttribute.h>
 #include <ImfThreading.h>
 
+#include <half.h>
+
 #include <algorithm>
+#include <bit>
 #include <cerrno>
 #include <charconv>
+#include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <fstream>
@@ -31,6 +35,7 @@
 
 #include "ltmd/errors.h"
 #include "ltmd/threads.h"
+#include "parallel.h"
 #include "utf8_path.h"
 
 namespace ltmd::inline v0 {
@@ -159,6 +164,8 @@ Imf::Compression imf_compression(Compression compression) {
             return Imf::ZIPS_COMPRESSION;
         case Compression::zip:
             return Imf::ZIP_COMPRESSION;
+        case Compression::piz:
+            return Imf::PIZ_COMPRESSION;
     }
     throw InvalidInput("unknown compression");
 }
@@ -170,7 +177,7 @@ void validate_name(const char* what, const std::string& name) {
 }
 
 Imf::Header make_header(int width, int height, std::span<const std::string> channels,
-                        Compression compression, const Metadata& metadata) {
+                        Compression compression, const Metadata& metadata, Imf::PixelType type) {
     Imf::Header header(width, height, 1, Imath::V2f(0, 0), 1, Imf::INCREASING_Y,
                        imf_compression(compression));
     std::set<std::string> names;
@@ -178,7 +185,7 @@ Imf::Header make_header(int width, int height, std::span<const std::string> chan
         validate_name("channel name", channel);
         if (!names.insert(channel).second)
             throw InvalidInput("channel name '" + channel + "' is repeated");
-        header.channels().insert(channel, Imf::Channel(Imf::FLOAT));
+        header.channels().insert(channel, Imf::Channel(type));
     }
     // The attributes that every file has, and those that OpenEXR reads in files of several parts.
     static const std::set<std::string> reserved = {"name",  "type", "version",  "chunkCount",
@@ -249,11 +256,91 @@ std::string number_text(Number number) {
     return text.str();
 }
 
+/// Round to nearest even at `bits` of the mantissa; what would overflow is cut off instead.
+float rounded(float value, int bits) {
+    const auto u = std::bit_cast<std::uint32_t>(value);
+    constexpr std::uint32_t exponent = 0x7f800000u;
+    if ((u & exponent) == exponent) return value;
+    const int dropped = full_mantissa - bits;
+    const std::uint32_t mask = (1u << dropped) - 1;
+    const std::uint32_t up = (u + (mask >> 1) + ((u >> dropped) & 1)) & ~mask;
+    return std::bit_cast<float>((up & exponent) == exponent ? u & ~mask : up);
+}
+
+Imath::half to_half(float value) {
+    constexpr float largest = HALF_MAX;
+    return Imath::half(std::isfinite(value) ? std::clamp(value, -largest, largest) : value);
+}
+
+template <class Item>
+void insert_slices(Imf::FrameBuffer& buffer, Imf::PixelType type, const Item* pixels,
+                   std::span<const std::string> channels, std::size_t row, int first_row) {
+    const std::size_t stride = row * sizeof(Item);
+    for (std::size_t k = 0; k < channels.size(); ++k) {
+        // OpenEXR's slices are not const, but writing only reads them; their base is row 0.
+        auto* first = reinterpret_cast<char*>(const_cast<Item*>(pixels + k)) -
+                      static_cast<std::ptrdiff_t>(stride) * first_row;
+        buffer.insert(channels[k], Imf::Slice(type, first, channels.size() * sizeof(Item), stride));
+    }
+}
+
+/// Rows at a time, so that rounding needs little memory.
+template <class Item, class Convert>
+void write_converted(Imf::OutputFile& file, Imf::PixelType type, std::span<const float> pixels,
+                     std::size_t row, std::span<const std::string> channels,
+                     const Convert& convert) {
+    constexpr int rows_at_a_time = 256;
+    const int height = static_cast<int>(pixels.size() / row);
+    std::vector<Item> strip;
+    for (int first = 0; first < height; first += rows_at_a_time) {
+        const int rows = std::min(rows_at_a_time, height - first);
+        const auto part = pixels.subspan(row * first, row * rows);
+        strip.resize(part.size());
+        parallel_for(part.size(), 1 << 16, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) strip[i] = convert(part[i]);
+        });
+        Imf::FrameBuffer buffer;
+        insert_slices(buffer, type, strip.data(), channels, row, first);
+        file.setFrameBuffer(buffer);
+        file.writePixels(rows);
+    }
+}
+
+void write_rows(Imf::OutputFile& file, std::span<const float> pixels, std::size_t row,
+                std::span<const std::string> channels, const Precision& precision) {
+    const int bits = precision.mantissa_bits;
+    if (precision.half)
+        write_converted<Imath::half>(file, Imf::HALF, pixels, row, channels,
+                                     [&](float v) { return to_half(rounded(v, bits)); });
+    else if (bits < full_mantissa)
+        write_converted<float>(file, Imf::FLOAT, pixels, row, channels,
+                               [&](float v) { return rounded(v, bits); });
+    else {
+        Imf::FrameBuffer buffer;
+        insert_slices(buffer, Imf::FLOAT, pixels.data(), channels, row, 0);
+        file.setFrameBuffer(buffer);
+        file.writePixels(static_cast<int>(pixels.size() / row));
+    }
+}
+
 }  // namespace
+
+int significant_bits(const Precision& precision) {
+    constexpr int half_mantissa = 10;
+    return precision.half ? std::min(precision.mantissa_bits, half_mantissa)
+                          : precision.mantissa_bits;
+}
+
+void validate(const Precision& precision) {
+    if (precision.mantissa_bits < 1 || precision.mantissa_bits > full_mantissa)
+        throw InvalidInput("mantissa_bits is " + std::to_string(precision.mantissa_bits) +
+                           "; it must be 1 to " + std::to_string(full_mantissa));
+}
 
 void write_exr(const std::string& path, std::span<const float> pixels, int width, int height,
                std::span<const std::string> channels, Compression compression,
-               const Metadata& metadata) {
+               const Metadata& metadata, const Precision& precision) {
+    validate(precision);
     if (width < 1 || height < 1 || width > max_size || height > max_size)
         throw InvalidInput("picture size " + std::to_string(width) + " x " +
                            std::to_string(height) + " is outside 1 to " + std::to_string(max_size) +
@@ -264,21 +351,13 @@ void write_exr(const std::string& path, std::span<const float> pixels, int width
         throw InvalidInput(std::to_string(pixels.size()) + " pixel values; expected " +
                            std::to_string(height) + " x " + std::to_string(width) + " x " +
                            std::to_string(channels.size()));
-    const Imf::Header header = make_header(width, height, channels, compression, metadata);
-
-    Imf::FrameBuffer buffer;
-    for (std::size_t k = 0; k < channels.size(); ++k) {
-        // OpenEXR's slices are not const, but writing only reads them.
-        auto* first = reinterpret_cast<char*>(const_cast<float*>(pixels.data() + k));
-        buffer.insert(channels[k], Imf::Slice(Imf::FLOAT, first, channels.size() * sizeof(float),
-                                              row * sizeof(float)));
-    }
+    const Imf::PixelType type = precision.half ? Imf::HALF : Imf::FLOAT;
+    const Imf::Header header = make_header(width, height, channels, compression, metadata, type);
     TemporaryFile temporary(path);
     try {
         FileStream stream(temporary, path);
         Imf::OutputFile file(stream, header, compression == Compression::none ? 0 : file_threads());
-        file.setFrameBuffer(buffer);
-        file.writePixels(height);
+        write_rows(file, pixels, row, channels, precision);
     } catch (const std::exception& exception) {
         fail(path, std::string("could not be written (") + exception.what() + ")");
     }

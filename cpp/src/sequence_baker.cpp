@@ -2,12 +2,12 @@
 #include "ltmd/sequence_baker.h"
 
 #include <algorithm>
-#include <array>
 #include <condition_variable>
 #include <deque>
 #include <exception>
 #include <mutex>
 #include <set>
+#include <sstream>
 #include <thread>
 
 #include "ltmd/bake.h"
@@ -19,8 +19,6 @@ namespace ltmd::inline v0 {
 namespace {
 
 constexpr int max_in_flight = 16;
-
-const std::array<std::string, 2> all_passes = {"tension", "stretch"};
 
 const char* name_of(Per per) {
     switch (per) {
@@ -39,8 +37,23 @@ std::string version_text() {
            std::to_string(LTMD_VERSION_PATCH);
 }
 
-std::span<const float> floats(const std::vector<Vec3f>& values) {
-    return {reinterpret_cast<const float*>(values.data()), values.size() * 3};
+std::string text(std::initializer_list<double> numbers) {
+    std::ostringstream stream;
+    stream.imbue(std::locale::classic());
+    stream.precision(17);
+    const char* gap = "";
+    for (const double number : numbers) {
+        stream << gap << number;
+        gap = " ";
+    }
+    return stream.str();
+}
+
+Metadata lobe_metadata(const Lobe& lobe) {
+    return {{"ltmd:alpha", text({lobe.alpha_x, lobe.alpha_y})},
+            {"ltmd:m0", text({lobe.m0.xx, lobe.m0.xy, lobe.m0.yx, lobe.m0.yy})},
+            {"ltmd:strength", text({lobe.strength})},
+            {"ltmd:height_response", text({lobe.height_response})}};
 }
 
 void require_count(const char* what, std::size_t mesh, std::size_t rest) {
@@ -57,23 +70,19 @@ const SequenceOptions& validated(const SequenceOptions& options, const MeshView&
                   rest.vertex_count());
     std::set<std::string> seen;
     for (const std::string& pass : options.passes) {
-        if (std::find(all_passes.begin(), all_passes.end(), pass) == all_passes.end()) {
-            std::string known;
-            for (const std::string& name : all_passes) known += (known.empty() ? "" : ", ") + name;
-            throw InvalidInput("unknown pass '" + pass + "'; there are: " + known);
-        }
+        pass_channels(pass);  // throws for an unknown one
         if (!seen.insert(pass).second) throw InvalidInput("pass '" + pass + "' is repeated");
     }
     if (options.passes.empty()) throw InvalidInput("no pass to bake");
     if (options.in_flight < 1 || options.in_flight > max_in_flight)
         throw InvalidInput("in_flight " + std::to_string(options.in_flight) + " is outside 1 to " +
                            std::to_string(max_in_flight) + " frames");
+    validate(options.precision);
+    validate(options.lobe);
     return options;
 }
 
 }  // namespace
-
-std::span<const std::string> pass_names() { return all_passes; }
 
 struct SequenceBaker::State {
     /// The pixels of one frame, one picture per pass; kept for the next frame.
@@ -97,6 +106,8 @@ struct SequenceBaker::State {
         options.metadata["ltmd:convention"] = std::to_string(convention);
         options.metadata["ltmd:per"] = name_of(options.per);
         options.metadata["ltmd:version"] = version_text();
+        const int bits = significant_bits(options.precision);
+        if (bits < full_mantissa) options.metadata["ltmd:mantissa_bits"] = std::to_string(bits);
         if (options.tile.u >= 0 && options.tile.u <= 9 && options.tile.v >= 0 &&
             options.tile.v <= 99)
             options.metadata["ltmd:udim"] = std::to_string(udim(options.tile));
@@ -164,7 +175,8 @@ struct SequenceBaker::State {
             try {
                 static const std::vector<std::string> channels = {"R", "G", "B", "A"};
                 write_exr(file.path, file.frame->pixels.at(file.pass), coverage.width(),
-                          coverage.height(), channels, options.compression, file.metadata);
+                          coverage.height(), channels, options.compression, file.metadata,
+                          options.precision);
             } catch (...) {
                 problem = std::current_exception();
             }
@@ -191,27 +203,25 @@ struct SequenceBaker::State {
     }
 
     void bake_pass(const std::string& pass, std::vector<float>& pixels) {
-        const bool is_stretch = pass == "stretch";
-        if (is_stretch) {
-            stretches.resize(tensions.size());
-            stretch(tensions, stretches);
-        }
-        const std::vector<Vec3f>& values = is_stretch ? stretches : tensions;
-        const std::array<float, 3> background =
-            is_stretch ? std::array{1.0f, 1.0f, 1.0f} : identity_tension;
+        const int channels = pass_channels(pass);
+        compute_pass(pass, tensions, options.lobe, values);
+        std::vector<float> background;
+        compute_pass(pass, {&identity_tension, 1}, options.lobe, background);
         pixels.resize(coverage.texels().size() * 4);
         if (options.per == Per::triangle) {
-            bake_flat(coverage, floats(values), 3, background, 4, pixels);
+            bake_flat(coverage, values, channels, background, 4, pixels);
             return;
         }
         if (options.per == Per::corner) {
-            bake(coverage, floats(values), 3, background, 4, pixels);
+            bake(coverage, values, channels, background, 4, pixels);
             return;
         }
-        corners.resize(corner_vert.size());
-        for (std::size_t c = 0; c < corners.size(); ++c)
-            corners[c] = values[static_cast<std::size_t>(corner_vert[c])];
-        bake(coverage, floats(corners), 3, background, 4, pixels);
+        const auto count = static_cast<std::size_t>(channels);
+        corners.resize(corner_vert.size() * count);
+        for (std::size_t c = 0; c < corner_vert.size(); ++c)
+            std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(corner_vert[c]) * channels,
+                        channels, corners.begin() + static_cast<std::ptrdiff_t>(c * count));
+        bake(coverage, corners, channels, background, 4, pixels);
     }
 
     void frame(std::span<const Vec3f> deformed, const std::map<std::string, std::string>& paths,
@@ -236,11 +246,15 @@ struct SequenceBaker::State {
             for (const auto& [pass, path] : paths) {
                 Metadata merged = options.metadata;
                 for (const auto& [key, value] : metadata) merged[key] = value;
-                for (const char* key : {"ltmd:convention", "ltmd:per", "ltmd:version", "ltmd:udim"})
+                for (const char* key : {"ltmd:convention", "ltmd:per", "ltmd:version", "ltmd:udim",
+                                        "ltmd:mantissa_bits"})
                     if (const auto ours = options.metadata.find(key);
                         ours != options.metadata.end())
                         merged[key] = ours->second;
                 merged["ltmd:pass"] = pass;
+                if (pass_uses_lobe(pass))
+                    for (const auto& [key, value] : lobe_metadata(options.lobe))
+                        merged[key] = value;
                 files.push_back({&frame, pass, path, std::move(merged)});
             }
             const std::lock_guard lock(mutex);
@@ -275,7 +289,8 @@ struct SequenceBaker::State {
     const RestState& rest;
     TexelCoverage coverage;
     std::vector<std::int32_t> corner_vert;
-    std::vector<Vec3f> tensions, stretches, corners;
+    std::vector<Tension> tensions;
+    std::vector<float> values, corners;
 
     std::mutex frame_mutex;
     mutable std::mutex mutex;  // all below

@@ -8,12 +8,14 @@
 #include <functional>
 #include <limits>
 #include <mutex>
+#include <numbers>
 #include <optional>
 #include <set>
 #include <system_error>
 
 #include "ltmd/errors.h"
 #include "ltmd/exr.h"
+#include "ltmd/passes.h"
 #include "parallel.h"
 #include "utf8_path.h"
 
@@ -22,7 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr float smallest_diagonal = 1e-3f, largest_diagonal = 1e3f, rounding = 1e-5f;
+constexpr float smallest_stretch = 1e-3f, largest_stretch = 1e3f, rounding = 1e-5f;
 
 /// A file of a sequence.
 struct File {
@@ -196,7 +198,8 @@ private:
                                   frame_text(first->first) + " is " +
                                   size_text(first->second.size) + ": bake one of them again");
             for (const char* key :
-                 {"ltmd:convention", "ltmd:pass", "ltmd:per", "ltmd:uv_map", "ltmd:rest"}) {
+                 {"ltmd:convention", "ltmd:pass", "ltmd:per", "ltmd:uv_map", "ltmd:rest",
+                  "ltmd:alpha", "ltmd:m0", "ltmd:strength", "ltmd:height_response"}) {
                 const std::string mine = value(file, key), others = value(first->second, key);
                 if (mine != others)
                     problem(name, frame_text(frame) + " has " + key + " '" + mine + "', " +
@@ -219,42 +222,70 @@ private:
                               frame_text(*header_frame) +
                               ": it was renamed, or copied over another; bake it again");
         try {
-            check_pixels(name, frame, read_exr(path(file.name)),
-                         value(file, "ltmd:pass") == "tension");
+            const int bits = stated(file, "ltmd:mantissa_bits").value_or(full_mantissa);
+            check_pixels(name, frame, read_exr(path(file.name)), value(file, "ltmd:pass"),
+                         rounding + std::ldexp(1.0f, -bits));
         } catch (const FileError& error) {
             report_.problems.push_back(error.what());
         }
     }
 
-    void check_pixels(const std::string& name, int frame, const ExrImage& image, bool is_tension) {
+    /// `slack`: the relative error of stored values.
+    void check_pixels(const std::string& name, int frame, const ExrImage& image, std::string pass,
+                      float slack) {
         const std::size_t count = image.channels.size();
         const auto channel = [&](const char* channel_name) {
             const auto found =
                 std::find(image.channels.begin(), image.channels.end(), channel_name);
             return static_cast<std::size_t>(found - image.channels.begin());
         };
-        const std::size_t red = channel("R"), blue = channel("B"), alpha = channel("A");
+        const std::size_t red = channel("R"), green = channel("G"), blue = channel("B"),
+                          alpha = channel("A");
         if (alpha == count)
             problem(name, frame_text(frame) + " has no channel A: Blender needs it; bake it again");
-        if (is_tension && (red == count || blue == count)) {
-            problem(name, frame_text(frame) +
-                              " has no channels R, G, B, so it holds no tension: bake it again");
-            is_tension = false;
+        const auto all = pass_names();
+        const bool is_known = std::find(all.begin(), all.end(), pass) != all.end();
+        if (is_known && (red == count || green == count || blue == count)) {
+            problem(name, frame_text(frame) + " has no channels R, G, B, so it holds no " + pass +
+                              ": bake it again");
+            pass.clear();
         }
-        report_first(name, frame, image, "a value that is not finite", [&](const float* p) {
+        const auto report = [&](const std::string& what, const auto& is_bad) {
+            report_first(name, frame, image, what, is_bad);
+        };
+        report("a value that is not finite", [&](const float* p) {
             return std::any_of(p, p + count, [](float v) { return !std::isfinite(v); });
         });
-        if (is_tension)
-            report_first(name, frame, image, "a tension with a diagonal outside 0.001 to 1000",
-                         [&](const float* p) { return outside(p[red]) || outside(p[blue]); });
-        if (alpha < count)
-            report_first(name, frame, image, "an alpha other than 1",
-                         [&](const float* p) { return std::isfinite(p[alpha]) && p[alpha] != 1; });
-    }
-
-    static bool outside(float diagonal) {
-        return diagonal < smallest_diagonal * (1 - rounding) ||
-               diagonal > largest_diagonal * (1 + rounding);
+        const float more = 1 + slack, low = smallest_stretch * (1 - slack),
+                    high = largest_stretch * (1 + slack);
+        const auto outside = [=](float v) { return v < low || v > high; };
+        if (pass == "tension")
+            report("a tension with a diagonal outside 0.001 to 1000",
+                   [&](const float* p) { return outside(p[red]) || outside(p[blue]); });
+        else if (pass == "stretch")
+            report("stretches that are not positive, the larger first", [&](const float* p) {
+                return p[green] <= 0 || p[blue] <= 0 || p[red] > high || p[green] > p[red] * more;
+            });
+        else if (pass == "wrinkle")
+            report("a stretch outside 0.001 to 1000 or a shear beyond a right angle",
+                   [&](const float* p) {
+                       return outside(p[red]) || outside(p[green]) ||
+                              std::abs(p[blue]) > std::numbers::pi_v<float> / 2 * more;
+                   });
+        else if (pass == "alpha2")
+            report("an alpha^2 matrix that is not positive", [&](const float* p) {
+                return p[red] <= 0 || p[blue] <= 0 ||
+                       std::abs(double{p[green]}) > std::sqrt(double{p[red]} * p[blue]) * more;
+            });
+        else if (pass == "roughness")
+            report("alphas that are not positive, the smaller first, or a direction beyond 1",
+                   [&](const float* p) {
+                       const float sine = alpha < count ? p[alpha] : 0;
+                       return p[red] <= 0 || p[red] > p[green] || std::hypot(p[blue], sine) > more;
+                   });
+        if (alpha < count && pass != "roughness")
+            report("an alpha other than 1",
+                   [&](const float* p) { return std::isfinite(p[alpha]) && p[alpha] != 1; });
     }
 
     /// One problem for all pixels that `is_bad`, with the first one's place.

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <bit>
+#include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -54,6 +55,39 @@ void expect_contains(const std::string& text, const std::string& part) {
     EXPECT_NE(text.find(part), std::string::npos) << "'" << part << "' is not in: " << text;
 }
 
+TEST(Exr, RoundsToTheNearestEvenMantissa) {
+    const TemporaryFolder folder;
+    constexpr float largest = std::numeric_limits<float>::max(),
+                    infinity = std::numeric_limits<float>::infinity();
+    const auto stored = [&](const std::vector<float>& pixels, const Precision& precision) {
+        write_exr(folder / "a.exr", pixels, static_cast<int>(pixels.size()), 1,
+                  std::vector<std::string>{"Y"}, Compression::zip, {}, precision);
+        return read_exr(folder / "a.exr").pixels;
+    };
+    // Two bits: 1, 1.25, 1.5, 1.75; halfway goes to the even one.
+    EXPECT_EQ(stored({1.125f, 1.126f, 1.375f, -1.124f, 1.9f, 0, largest, -largest, infinity},
+                     {.mantissa_bits = 2}),
+              (std::vector<float>{1, 1.25f, 1.5f, -1, 2, 0, 0x1.cp127f, -0x1.cp127f, infinity}));
+    EXPECT_EQ(stored({1.0f + 0x1p-11f, 1.0f + 0x1.8p-11f, 7e4f, -largest, 65504, 0x1p-24f},
+                     {.half = true}),
+              (std::vector<float>{1, 1.0f + 0x1p-10f, 65504, -65504, 65504, 0x1p-24f}));
+    const std::vector<float> values = noise(300 * 17);
+    for (int bits = 1; bits <= 23; ++bits) {
+        const std::vector<float> result = stored(values, {.mantissa_bits = bits});
+        for (std::size_t i = 0; i < values.size(); ++i) {
+            int exponent;
+            std::frexp(values[i], &exponent);
+            const double step = std::ldexp(1.0, exponent - 1 - bits);
+            ASSERT_EQ(result[i], std::nearbyint(values[i] / step) * step) << bits;
+        }
+    }
+    // More rows than are converted at a time, each with its own value.
+    std::vector<float> rows;
+    for (int i = 0; i < 600; ++i) rows.insert(rows.end(), 8, static_cast<float>(i));
+    write_exr(folder / "b.exr", rows, 2, 600, rgba, Compression::piz, {}, {.half = true});
+    EXPECT_EQ(read_exr(folder / "b.exr").pixels, rows);
+}
+
 TEST(Exr, RoundTripIsBitEqual) {
     const TemporaryFolder folder;
     std::vector<float> pixels = noise(67 * 45 * 4);
@@ -63,7 +97,7 @@ TEST(Exr, RoundTripIsBitEqual) {
     pixels[6] = std::numeric_limits<float>::quiet_NaN();
     for (const int threads : {1, 3})
         for (const Compression compression :
-             {Compression::none, Compression::zips, Compression::zip}) {
+             {Compression::none, Compression::zips, Compression::zip, Compression::piz}) {
             set_thread_count(threads);
             write_exr(folder / "a.exr", pixels, 67, 45, rgba, compression);
             const ExrImage image = read_exr(folder / "a.exr");
@@ -261,6 +295,10 @@ TEST(Exr, RefusesWrongInput) {
     const TemporaryFolder folder;
     const std::string path = folder / "a.exr";
     const std::vector<float> pixels(16);
+    for (const int bits : {0, 24, -1})
+        EXPECT_THROW(
+            write_exr(path, pixels, 2, 2, rgba, Compression::zip, {}, {.mantissa_bits = bits}),
+            InvalidInput);
     EXPECT_THROW(write_exr(path, pixels, 2, 3, rgba), InvalidInput);
     EXPECT_THROW(write_exr(path, {}, 0, 2, rgba), InvalidInput);
     EXPECT_THROW(write_exr(path, {}, 65537, 0, rgba), InvalidInput);

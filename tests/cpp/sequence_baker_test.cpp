@@ -312,7 +312,9 @@ TEST(SequenceBaker, RefusesWhatItCannotDo) {
     MeshView other = strip.view();
     other.triangles = other.triangles.first(3);
     EXPECT_THROW(SequenceBaker(other, rest, width, height), InvalidInput);
-    EXPECT_EQ(pass_names().size(), 2u);
+    refuses({.precision = {.mantissa_bits = 0}});
+    refuses({.lobe = {.alpha_x = 0}});
+    refuses({.lobe = {.m0 = {1, 2, 2, 4}}});
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -140,11 +141,59 @@ TEST(Verify, FindsBadValues) {
         write(folder, "a_tension.0001.exr", pixels);
         EXPECT_EQ(verify(folder.string()).problems,
                   c.problem.empty() ? Problems() : Problems{"a_tension: frame 1 has " + c.problem});
-        // Only tension has such a diagonal.
-        write(folder, "a_tension.0001.exr", pixels, {{"ltmd:pass", "stretch"}});
+        // An unknown pass may hold any numbers.
+        write(folder, "a_tension.0001.exr", pixels, {{"ltmd:pass", "other"}});
         EXPECT_EQ(verify(folder.string()).ok(),
                   c.problem.find("diagonal") != std::string::npos || c.problem.empty());
     }
+}
+
+TEST(Verify, KnowsWhatEachPassCanHold) {
+    const std::string stretches = "stretches that are not positive, the larger first",
+                      wrinkles = "a stretch outside 0.001 to 1000 or a shear beyond a right angle",
+                      matrices = "an alpha^2 matrix that is not positive",
+                      alphas =
+                          "alphas that are not positive, the smaller first, or a direction "
+                          "beyond 1";
+    struct Case {
+        std::string pass;
+        std::array<float, 4> pixel;
+        std::string problem;
+    };
+    for (const Case& c : {Case{"stretch", {2, 0.5f, 1, 1}, ""},
+                          {"stretch", {0.5f, 2, 1, 1}, stretches},
+                          {"stretch", {2, 0, 1, 1}, stretches},
+                          {"wrinkle", {2, 0.5f, -1.5f, 1}, ""},
+                          {"wrinkle", {2, 0.5f, 1.6f, 1}, wrinkles},
+                          {"wrinkle", {0, 1, 0, 1}, wrinkles},
+                          {"alpha2", {0.04f, -0.039f, 0.04f, 1}, ""},
+                          {"alpha2", {0.04f, 0.041f, 0.04f, 1}, matrices},
+                          {"alpha2", {0.04f, 0, 0, 1}, matrices},
+                          {"roughness", {0.1f, 3, -0.6f, 0.8f}, ""},
+                          {"roughness", {0.1f, 3, 0, 0}, ""},
+                          {"roughness", {3, 0.1f, 1, 0}, alphas},
+                          {"roughness", {0, 0.1f, 1, 0}, alphas},
+                          {"roughness", {1, 1, 0.9f, 0.9f}, alphas},
+                          {"alpha2", {0.04f, 0, 0.04f, 0}, "an alpha other than 1"}}) {
+        const TemporaryFolder folder;
+        const std::vector<float> pixels(c.pixel.begin(), c.pixel.end());
+        write(folder, "a.0001.exr", pixels, {{"ltmd:pass", c.pass}}, 1);
+        EXPECT_EQ(verify(folder.string()).problems,
+                  c.problem.empty() ? Problems()
+                                    : Problems{"a: frame 1 has " + c.problem +
+                                               " in 1 pixel, first at column 0, row 0: bake it "
+                                               "again"})
+            << c.pass;
+    }
+}
+
+TEST(Verify, AllowsForTheStatedRounding) {
+    const TemporaryFolder folder;
+    const std::vector<float> pixels = {1001.0f, 0, 1, 1};
+    write(folder, "a.0001.exr", pixels, {{"ltmd:mantissa_bits", "9"}}, 1);
+    EXPECT_TRUE(verify(folder.string()).ok());
+    write(folder, "a.0001.exr", pixels, {{"ltmd:mantissa_bits", "12"}}, 1);
+    EXPECT_FALSE(verify(folder.string()).ok());
 }
 
 TEST(Verify, FindsFramesThatDoNotBelongTogether) {

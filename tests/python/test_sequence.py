@@ -322,3 +322,74 @@ def test_wrong_arguments(shape, tmp_path):
     sequence.frame(shape.positions, {"tension": name(tmp_path, 1)})
     sequence.finish()
     assert os.listdir(tmp_path) == ["ball_tension.0001.exr"]
+
+
+LOBE = {"alpha": (0.1, 0.3), "M0": [[1, 0.4], [0.1, 0.8]], "strength": 0.7, "height_response": 0.5}
+
+
+@pytest.mark.parametrize("per", ["corner", "vertex"])
+def test_every_pass_is_its_function_of_the_tension(per, shape, tmp_path):
+    sequence = baker(shape, passes=ltmd.passes, per=per, margin=4, **LOBE)
+    paths = {what: name(tmp_path, 3, what) for what in ltmd.passes}
+    sequence.frame(deformed(shape, 3), paths)
+    sequence.finish()
+    t = shape.tension(deformed(shape, 3), per)
+    t = t[shape.corner_vert] if per == "vertex" else t
+    rest = np.array([1, 0, 1], np.float32)
+    functions = {
+        "tension": lambda t: t,
+        "stretch": ltmd.stretch,
+        "wrinkle": ltmd.wrinkle,
+        "alpha2": lambda t: ltmd.alpha2(t, **LOBE),
+        "roughness": lambda t: ltmd.roughness(t, **LOBE),
+    }
+    assert list(functions) == ltmd.passes
+    for what, function in functions.items():
+        background = function(rest)
+        values = np.ascontiguousarray(function(t))
+        expected = ltmd.bake(shape.mesh(), values, 64, 64, margin=4, background=background)
+        pixels = ltmd.read_exr(paths[what])
+        assert_same_bits(pixels[0, 0, : len(background)], background)
+        assert_same_bits(np.ascontiguousarray(pixels[..., : len(background)]), expected)
+        if what != "roughness":
+            assert (pixels[..., 3] == 1).all()
+        metadata = ltmd.exr_metadata(paths[what])
+        assert metadata["ltmd:pass"] == what
+        assert "ltmd:mantissa_bits" not in metadata
+        if what in ("alpha2", "roughness"):
+            assert [float(v) for v in metadata["ltmd:alpha"].split()] == [0.1, 0.3]
+            assert [float(v) for v in metadata["ltmd:m0"].split()] == [1, 0.4, 0.1, 0.8]
+            assert float(metadata["ltmd:strength"]) == 0.7
+            assert float(metadata["ltmd:height_response"]) == 0.5
+        else:
+            assert "ltmd:alpha" not in metadata
+    assert ltmd.verify(tmp_path).problems == []
+
+
+@pytest.mark.parametrize("precision", [{"half": True}, {"mantissa_bits": 6}, {"mantissa_bits": 1}])
+def test_rounded_sequences_say_so_and_pass_verify(precision, shape, tmp_path):
+    with baker(shape, passes=ltmd.passes, compression="piz", alpha=0.3, **precision) as sequence:
+        sequence.frame(deformed(shape, 6), {what: name(tmp_path, 6, what) for what in ltmd.passes})
+    bits = precision.get("mantissa_bits", 10)
+    with baker(shape, passes=ltmd.passes, alpha=0.3) as sequence:
+        sequence.frame(deformed(shape, 6), {what: str(tmp_path / what) for what in ltmd.passes})
+    for what in ltmd.passes:
+        path = name(tmp_path, 6, what)
+        assert ltmd.exr_metadata(path)["ltmd:mantissa_bits"] == str(bits)
+        exact = ltmd.read_exr(str(tmp_path / what))
+        error = np.abs(ltmd.read_exr(path) - exact)
+        # Half has no more than 2^-24 absolutely.
+        assert (error <= 2.0 ** -(bits + 1) * np.abs(exact) + 2.0**-25).all()
+        assert error.max() > 0
+    assert ltmd.verify(tmp_path).problems == []
+
+
+def test_refuses_a_bad_lobe_or_precision(shape):
+    for options, words in (
+        ({"mantissa_bits": 0}, "1 to 23"),
+        ({"alpha": 0}, "above 0"),
+        ({"M0": np.zeros((2, 2))}, "invertible"),
+        ({"compression": "b44"}, "piz"),
+    ):
+        with pytest.raises(ValueError, match=words):
+            baker(shape, **options)

@@ -10,17 +10,16 @@
 
 #include "ltmd/export.h"
 #include "ltmd/exr.h"
+#include "ltmd/lobe_parameters.h"
+#include "ltmd/passes.h"
 #include "ltmd/rest_state.h"
 #include "ltmd/tension.h"
 #include "ltmd/texel_coverage.h"
 
 namespace ltmd::inline v0 {
 
-/// Names of what can be baked from tension: "tension" (t11, t12, t22) and "stretch".
-LTMD_API std::span<const std::string> pass_names();
-
 struct SequenceOptions {
-    std::vector<std::string> passes = {"tension"};  ///< What frame() may be asked for.
+    std::vector<std::string> passes = {"tension"};  ///< What frame() may be asked for (passes.h).
     int margin = 16;
     Tile tile = {};
     Per per = Per::corner;  ///< corner, vertex or triangle (flat).
@@ -28,20 +27,24 @@ struct SequenceOptions {
     Metadata metadata = {};
     int in_flight = 2;  ///< Frames of pixels held at most, 1 to 16; the same number of files is
                         ///< compressed at a time.
+    Precision precision = {};  ///< Of the pixels in the files.
+    Lobe lobe = {};            ///< Of the passes alpha2 and roughness.
 };
 
 /// Bakes the frames of an animation: coverage is computed once, each frame is a gather, and
-/// compressing and writing one frame overlap with the next. Files are RGBA, 32-bit float, A = 1.
-/// Their metadata is the options', the frame's, and always `ltmd:convention`, `ltmd:pass`,
-/// `ltmd:per`, `ltmd:version` and, in a UDIM tile, `ltmd:udim`. Texels that no triangle reaches
-/// hold the pass of the identity.
+/// compressing and writing one frame overlap with the next. Files are RGBA; A = 1 but in the pass
+/// roughness. Their metadata is the options', the frame's, and always `ltmd:convention`,
+/// `ltmd:pass`, `ltmd:per`, `ltmd:version`, in a UDIM tile `ltmd:udim`, below full precision
+/// `ltmd:mantissa_bits`, and of a pass with a lobe `ltmd:alpha` ("x y"), `ltmd:m0` ("xx xy yx yy"),
+/// `ltmd:strength` and `ltmd:height_response`. Texels that no triangle reaches hold the pass of the
+/// identity.
 ///
 /// cancel() and the counters may be called from any thread while another is in frame() or finish().
 class LTMD_API SequenceBaker {
 public:
-    /// Throws InvalidInput for an unknown, repeated or missing pass, a bad size, margin or
-    /// in_flight, or a mesh that is not that of `rest`. `rest` must outlive the baker; `mesh` may
-    /// be freed.
+    /// Throws InvalidInput for an unknown, repeated or missing pass, a bad size, margin,
+    /// in_flight, precision or lobe, or a mesh that is not that of `rest`. `rest` must outlive the
+    /// baker; `mesh` may be freed.
     SequenceBaker(const MeshView& mesh, const RestState& rest, int width, int height,
                   const SequenceOptions& options = {});
     /// Cancels what has not been written and waits for the files being written.

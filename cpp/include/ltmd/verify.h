@@ -23,12 +23,13 @@ struct VerifyReport {
 ///
 /// Each frame is present (a missing one would render as the identity) and once, has the number that
 /// its header states, and can be read whole; all frames of a sequence have one size and one
-/// convention, pass, `ltmd:per`, UV map and rest state; all values are finite, tension's diagonal
-/// is in [1e-3, 1e3] and A = 1. The frames expected, and the only ones looked at, are `frames` if
-/// not empty, else the range that the files' own metadata states (`ltmd:frame_start`,
-/// `ltmd:frame_end`), else lowest to highest. `sequences`, if not empty, are the only ones looked
-/// at, and one without a file is a problem. Throws FileError when the folder cannot be read; a
-/// folder without sequences is a problem, not an error.
+/// convention, pass, `ltmd:per`, UV map, rest state and lobe; all values are finite and possible
+/// for their pass (stretches in [1e-3, 1e3], positive alphas), within the rounding that the file
+/// states, and A = 1 but in the pass roughness. The frames expected, and the only ones looked at,
+/// are `frames` if not empty, else the range that the files' own metadata states
+/// (`ltmd:frame_start`, `ltmd:frame_end`), else lowest to highest. `sequences`, if not empty, are
+/// the only ones looked at, and one without a file is a problem. Throws FileError when the folder
+/// cannot be read; a folder without sequences is a problem, not an error.
 LTMD_API VerifyReport verify(const std::string& directory, const std::vector<int>& frames = {},
                              const std::vector<std::string>& sequences = {});
 

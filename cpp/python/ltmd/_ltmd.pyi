@@ -5,7 +5,7 @@ from types import TracebackType
 from typing import Literal, Self
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 __version__: str
 convention: int
@@ -13,7 +13,7 @@ passes: list[str]
 
 Path = str | os.PathLike[str]
 Per = Literal["triangle", "vertex", "corner"]
-Compression = Literal["none", "zips", "zip"]
+Compression = Literal["none", "zips", "zip", "piz"]
 
 class InvalidInput(ValueError): ...
 class FileError(OSError): ...
@@ -95,6 +95,12 @@ class SequenceBaker:
         compression: Compression = "zip",
         metadata: dict[str, object] = {},
         in_flight: int = 2,
+        half: bool = False,
+        mantissa_bits: int | None = None,
+        alpha: float | Sequence[float] = 0.5,
+        M0: ArrayLike | None = None,
+        strength: float = 1.0,
+        height_response: float = 0.0,
     ) -> None: ...
     def frame(
         self,
@@ -135,6 +141,30 @@ def tension(
 ) -> NDArray[np.float32]: ...
 def tension_matrix(t: NDArray[np.float32]) -> NDArray[np.float32]: ...
 def stretch(t: NDArray[np.float32]) -> NDArray[np.float32]: ...
+def wrinkle(t: NDArray[np.float32]) -> NDArray[np.float32]: ...
+def stretch_matrix(s: float) -> NDArray[np.float64]: ...
+def material_matrix(stretch: float, rotation: float, shear: float) -> NDArray[np.float64]: ...
+def alpha2(
+    t: NDArray[np.float32],
+    alpha: float | Sequence[float],
+    M0: ArrayLike | None = None,
+    strength: float = 1.0,
+    height_response: float = 0.0,
+) -> NDArray[np.float32]: ...
+def roughness(
+    t: NDArray[np.float32],
+    alpha: float | Sequence[float],
+    M0: ArrayLike | None = None,
+    strength: float = 1.0,
+    height_response: float = 0.0,
+) -> NDArray[np.float32]: ...
+def lobe_parameters(
+    t: NDArray[np.float32],
+    alpha: float | Sequence[float],
+    M0: ArrayLike | None = None,
+    strength: float = 1.0,
+    height_response: float = 0.0,
+) -> tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.float32]]: ...
 def deformation_tensor(
     mesh: Mesh, rest: RestState | NDArray[np.float32], deformed: NDArray[np.float32]
 ) -> NDArray[np.float32]: ...
@@ -156,6 +186,8 @@ def write_exr(
     *,
     channels: Sequence[str] | None = None,
     compression: Compression = "zip",
+    half: bool = False,
+    mantissa_bits: int | None = None,
     metadata: dict[str, object] = {},
 ) -> None: ...
 def read_exr(path: Path) -> NDArray[np.float32]: ...
