@@ -753,7 +753,7 @@ class LTMD_OT_bake(bpy.types.Operator):
         description="How far values continue beyond a UV island; -1: the setting of the object",
         default=-1,
         min=-1,
-        max=1024,
+        max=64,
         options={"SKIP_SAVE"},
     )
     directory: StringProperty(

@@ -55,8 +55,8 @@ def _size(text):
 
 
 def _margin(text):
-    if not text.isdigit():
-        raise argparse.ArgumentTypeError(f"a margin is a number of pixels from 0 on, not {text!r}")
+    if not text.isdigit() or int(text) > 64:
+        raise argparse.ArgumentTypeError(f"a margin is 0 to 64 pixels, not {text!r}")
     return int(text)
 
 

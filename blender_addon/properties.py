@@ -71,7 +71,7 @@ class LtmdObjectSettings(bpy.types.PropertyGroup):
         description="How far values continue beyond the edge of a UV island, in pixels",
         default=16,
         min=0,
-        max=256,
+        max=64,
         subtype="PIXEL",
         override=OVERRIDABLE,
     )
