@@ -88,7 +88,7 @@ ltmd_packages() {
 
 ltmd_system_packages() {
     local wanted python
-    wanted=(g++ cmake ninja-build libgtest-dev ca-certificates
+    wanted=(g++ cmake ninja-build pkg-config libgtest-dev libcli11-dev libtinyobjloader-dev ca-certificates
         libsm6 libice6 libxrender1 libxi6 libxfixes3 libxxf86vm1 libxkbcommon0 libgl1 libegl1)
     python=$(ltmd_python 3.11) || wanted+=(python3.11)
     if [ -z "${python:-}" ] || ! ltmd_python_is_complete "$python"; then
