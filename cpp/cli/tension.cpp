@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cstdio>
 #include <filesystem>
@@ -15,6 +16,8 @@
 #include "frame_numbers.h"
 #include "interrupt.h"
 #include "ltmd/errors.h"
+#include "ltmd/lobe_parameters.h"
+#include "ltmd/passes.h"
 #include "ltmd/sequence_baker.h"
 #include "ltmd/texel_coverage.h"
 #include "ltmd/threads.h"
@@ -29,8 +32,10 @@ constexpr double most_overlap = 0.001;
 
 const std::map<std::string, Per> per_names = {
     {"corner", Per::corner}, {"vertex", Per::vertex}, {"triangle", Per::triangle}};
-const std::map<std::string, Compression> compression_names = {
-    {"none", Compression::none}, {"zips", Compression::zips}, {"zip", Compression::zip}};
+const std::map<std::string, Compression> compression_names = {{"none", Compression::none},
+                                                              {"zips", Compression::zips},
+                                                              {"zip", Compression::zip},
+                                                              {"piz", Compression::piz}};
 
 struct Options {
     std::string rest;
@@ -41,6 +46,9 @@ struct Options {
     bool allow_overlap = false, quiet = false;
     std::string per = "corner", compression = "zip";
     int margin = 16;
+    Precision precision;
+    std::vector<double> alpha, anisotropy;
+    Lobe lobe;
 };
 
 /// `2048` or `2048x1024`.
@@ -59,6 +67,22 @@ std::array<int, 2> parse_size(const std::string& text) {
     return {width, times == std::string::npos ? width : number(text.substr(times + 1))};
 }
 
+Lobe lobe_of(const Options& options) {
+    Lobe lobe = options.lobe;
+    if (!options.alpha.empty()) {
+        lobe.alpha_x = options.alpha.front();
+        lobe.alpha_y = options.alpha.back();
+    }
+    try {
+        const std::vector<double>& m0 = options.anisotropy;
+        if (!m0.empty()) lobe.m0 = material_matrix(m0[0], m0[1], m0[2]);
+        validate(lobe);
+    } catch (const InvalidInput& error) {
+        throw UsageError(error.what());
+    }
+    return lobe;
+}
+
 void warn(std::size_t count, const char* what) {
     if (count > 0) std::fprintf(stderr, "ltmd: warning: %zu %s\n", count, what);
 }
@@ -68,6 +92,7 @@ public:
     explicit TensionBake(const Options& options)
         : options_(options), output_(options.outputs, options.passes) {
         size_ = parse_size(options.size);
+        lobe_ = lobe_of(options);
         const std::vector<int> given = parse_frames(options.frames);
         if (!given.empty() && given.size() != options.deformed.size())
             throw UsageError("--frames names " + std::to_string(given.size()) + " frames for " +
@@ -150,6 +175,8 @@ private:
         sequence.tile = tile;
         sequence.per = per_names.at(options_.per);
         sequence.compression = compression_names.at(options_.compression);
+        sequence.precision = options_.precision;
+        sequence.lobe = lobe_;
         sequence.metadata = {{"ltmd:object", stem(options_.rest)},
                              {"ltmd:rest", "file:" + file_name(options_.rest)}};
         if (!frames_.empty()) {
@@ -221,6 +248,7 @@ private:
     const Options& options_;
     OutputPattern output_;
     std::array<int, 2> size_{};
+    Lobe lobe_;
     std::vector<int> frames_;  // empty: the files carry no frame
     ObjMesh mesh_;
     std::optional<RestState> rest_;
@@ -265,8 +293,32 @@ Command add_tension(CLI::App& app) {
         ->add_option("--per", options->per,
                      "Average over each corner's UV fan (default), each vertex, or not at all")
         ->check(CLI::IsMember({"corner", "vertex", "triangle"}));
-    parser->add_option("--compression", options->compression, "Lossless; default: zip")
-        ->check(CLI::IsMember({"none", "zips", "zip"}));
+    parser->add_option("--compression", options->compression, "Lossless (default: zip)")
+        ->check(CLI::IsMember({"none", "zips", "zip", "piz"}));
+    parser->add_flag("--half", options->precision.half, "16-bit float");
+    parser
+        ->add_option("--mantissa-bits", options->precision.mantissa_bits,
+                     "Round pixels to this many bits, so that files are smaller (default: not)")
+        ->check(CLI::Range(1, full_mantissa));
+    parser
+        ->add_option("--alpha", options->alpha,
+                     "Of the passes alpha2 and roughness: the lobe's alpha at rest, or its alphas "
+                     "along U and V (default: 0.5)")
+        ->type_name("A[,A]")
+        ->expected(1, 2)
+        ->delimiter(',')
+        ->allow_extra_args(false);
+    parser
+        ->add_option("--m0", options->anisotropy,
+                     "The material's own anisotropy: stretch, rotation (radians), shear")
+        ->type_name("S,R,H")
+        ->expected(3)
+        ->delimiter(',')
+        ->allow_extra_args(false);
+    parser->add_option("--strength", options->lobe.strength,
+                       "How much of the deformation the lobe follows (default: 1)");
+    parser->add_option("--height-response", options->lobe.height_response,
+                       "0: heights are kept (default), 1: volume is kept");
     parser->add_option("--threads", options->threads, "0: one per core (default)")
         ->check(CLI::Range(0, 1024));
     parser->add_flag("--allow-overlap", options->allow_overlap,

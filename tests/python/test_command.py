@@ -159,6 +159,31 @@ def test_same_bits_as_the_python_package(tmp_path, tube, per):
     assert header["ltmd:udim"] == "1002" and header["ltmd:object"] == "rest"
 
 
+@pytest.mark.parametrize("name", ["alpha2", "roughness", "wrinkle"])
+def test_passes_of_a_lobe(tmp_path, tube, name):
+    mesh, deformed = tube
+    shape = mesh.shape(by_shorter_diagonal)
+    out, expected = tmp_path / "command.exr", tmp_path / "python.exr"
+    lobe = ["--alpha", "0.3,0.2", "--m0=-0.4,0.3,0.1", "--strength", 0.7, "--height-response", 0.5]
+    run(
+        *("tension", tmp_path / "rest.obj", tmp_path / "face.0007.obj", "-o", out),
+        *("--pass", name, *lobe, "--half", "--mantissa-bits", 8, "--tile", 1003),
+        *("--size", 24, "--compression", "piz"),
+    )
+    prepared = shape.mesh()
+    options = {"alpha": (0.3, 0.2), "M0": ltmd.material_matrix(-0.4, 0.3, 0.1), "strength": 0.7}
+    options |= {"height_response": 0.5, "half": True, "mantissa_bits": 8, "compression": "piz"}
+    baker = ltmd.SequenceBaker(
+        prepared, shape.rest(prepared), 24, 24, [name], tile=(2, 0), **options
+    )
+    baker.frame(deformed, {name: expected})
+    baker.finish()
+    assert_same_bits(ltmd.read_exr(out), ltmd.read_exr(expected))
+    keys = ("ltmd:alpha", "ltmd:m0", "ltmd:strength", "ltmd:height_response", "ltmd:mantissa_bits")
+    ours, theirs = ltmd.exr_metadata(out), ltmd.exr_metadata(expected)
+    assert [ours.get(key) for key in keys] == [theirs.get(key) for key in keys]
+
+
 def test_quads_are_cut_by_the_rest_state_alone(tmp_path):
     # Sheared so that the other diagonal is the shorter one once deformed.
     mesh = quads(3, 3, bend=0.02)
@@ -273,6 +298,8 @@ def test_help_and_version():
             ["tension", "rest.obj", "face.0007.obj", "-o", "x.<frame>.exr", "--frames", "7-"],
             "1-24",
         ),
+        (["tension", "rest.obj", "face.0007.obj", "-o", "x.exr", "--alpha", "0"], "alpha"),
+        (["tension", "rest.obj", "face.0007.obj", "-o", "x.exr", "--m0", "1,0,0"], "stretch"),
         (["verify"], "DIR"),
         (["verify", ".", "--frames", "3,3"], "twice"),
     ],
