@@ -22,11 +22,16 @@ from bpy.props import (
     StringProperty,
 )
 
-from . import evaluate, frames, library, naming, rest_state, simulation, source
+from . import evaluate, frames, library, naming, rest_state, simulation, source, surface, usd
 from .library import LibraryMissing
+from .properties import PASS_ITEMS
 from .writable import REFUSAL, is_writable
 
-PASSES = ("tension",)
+PASSES = tuple(item[0].lower() for item in PASS_ITEMS)
+DEFAULT_PASSES = ("tension",)
+COMPRESSIONS = ("zip", "zips", "piz", "none")
+# Lobe settings in the metadata of the passes that depend on them.
+LOBE_KEYS = ("ltmd:alpha", "ltmd:m0", "ltmd:strength", "ltmd:height_response")
 CONVENTION = "1"
 # Shared texels hold one value for two places of the surface.
 MOST_OVERLAP = 0.001
@@ -59,9 +64,13 @@ class Settings:
     width: int = 1024
     height: int = 1024
     margin: int = 16
-    passes: tuple = PASSES
+    passes: tuple = DEFAULT_PASSES
     folder: str = "//ltmd/"
     compression: str = "zip"
+    half: bool = False
+    mantissa_bits: int | None = None
+    alpha: tuple | None = None
+    usd: bool = False
     allow_overlap: bool = False
     resume: bool = False
     switch: bool = False
@@ -85,6 +94,8 @@ class Target:
     overlap: float = 0.0
     degenerate: int = 0
     metric: np.ndarray | None = None
+    lobe: dict = field(default_factory=dict)
+    prepared: object = None
     bakers: dict = field(default_factory=dict)
     coverage: dict = field(default_factory=dict)
     files: list = field(default_factory=list)
@@ -134,6 +145,10 @@ class Bake:
         unknown = [name for name in settings.passes if name not in PASSES]
         if unknown:
             problems.append(f"Unknown pass {unknown[0]}: there is {', '.join(PASSES)}")
+        if not settings.passes and not settings.usd:
+            problems.append(f"There is no pass to bake: choose from {', '.join(PASSES)}")
+        if settings.usd and usd.problem():
+            problems.append(usd.problem())
         if not settings.objects:
             problems.append("There is no object to bake")
         frozen = _frozen_problem()
@@ -153,6 +168,7 @@ class Bake:
                 spec=settings.rest or object_rest(obj),
                 uv_map=settings.uv_map if settings.uv_map is not None else obj.ltmd.uv_map,
                 todo=set(settings.frames),
+                lobe=lobe_of(obj, settings.alpha),
             )
             self.targets.append(target)
             problems += self._rest_problems(obj, target)
@@ -265,13 +281,20 @@ class Bake:
             target.tiles = tiles = list(self._mesh(target, mesh).tiles)
             for frame in sorted(target.todo):
                 paths = self._paths(target, tiles, frame)
-                if all(
-                    self._is_finished(path, target, tile, frame)
+                finished = [path for files in paths.values() for path in files.values()]
+                done = all(
+                    self._is_finished(path, target, tile, name, frame)
                     for tile, files in paths.items()
-                    for path in files.values()
-                ):
+                    for name, path in files.items()
+                )
+                if self.settings.usd:
+                    path = self._usd_path(target, frame)
+                    wanted = self._usd_metadata(target, frame)
+                    done = done and os.path.exists(path) and usd.metadata(path) == wanted
+                    finished.append(path)
+                if done:
                     target.todo.discard(frame)
-                    target.skipped += [path for files in paths.values() for path in files.values()]
+                    target.skipped += finished
         # A simulation that is not baked has to be stepped through from its start.
         stepped = any(
             simulation.unbaked(self._find(bpy.data.objects, target.uid)) and target.todo
@@ -280,16 +303,23 @@ class Bake:
         if not stepped:
             self.order = self._order()
 
-    def _is_finished(self, path, target, tile, frame):
+    def _is_finished(self, path, target, tile, name, frame):
         """Whether the file holds this frame under these settings and can be read to its end."""
         if not os.path.exists(path):
             return False
-        wanted = self._metadata(target, tile) | {"ltmd:frame": str(frame)}
+        wanted = self._metadata(target, tile) | {"ltmd:frame": str(frame), "ltmd:pass": name}
         ignored = ("ltmd:frame_start", "ltmd:frame_end")
+        bits = min(self.settings.mantissa_bits or 23, 10 if self.settings.half else 23)
         try:
             found = self.ltmd.exr_metadata(path)
             if any(found.get(key) != wanted[key] for key in wanted if key not in ignored):
                 return False
+            if found.get("ltmd:mantissa_bits", "23") != str(bits):
+                return False
+            if name in ("alpha2", "roughness"):
+                given = [float(v) for key in LOBE_KEYS for v in found.get(key, "").split()]
+                if given != lobe_numbers(target.lobe):
+                    return False
             shape = self.ltmd.read_exr(path).shape
         except (OSError, ValueError):
             return False
@@ -383,10 +413,25 @@ class Bake:
             self._bakers_for(target, matrix)
             if matrix is not None:
                 positions = transformed(positions, matrix)
-            paths = self._paths(target, target.tiles, frame)
-            for tile, files in paths.items():
-                target.bakers[tile].frame(positions, files, metadata={"ltmd:frame": str(frame)})
-                target.files += files.values()
+            if self.settings.passes:
+                paths = self._paths(target, target.tiles, frame)
+                for tile, files in paths.items():
+                    target.bakers[tile].frame(positions, files, metadata={"ltmd:frame": str(frame)})
+                    target.files += files.values()
+            if self.settings.usd:
+                path = self._usd_path(target, frame)
+                usd.write(
+                    path,
+                    target.name,
+                    rest_state.read_positions(mesh),
+                    obj.matrix_world,
+                    usd.read_face_sizes(mesh),
+                    arrays.corner_vert,
+                    arrays.uv,
+                    self.ltmd.tension(target.mesh, target.prepared, positions),
+                    self._usd_metadata(target, frame),
+                )
+                target.files.append(path)
         except ValueError as error:
             raise Refused(f'"{target.name}" at frame {frame}: {error}') from None
         except OSError as error:
@@ -420,6 +465,8 @@ class Bake:
         report = self.ltmd.RestState(target.mesh, arrays.positions).report
         target.overlap = float(report.overlap_fraction)
         target.degenerate = int(report.degenerate_triangles)
+        if not self.settings.passes:
+            return  # corners share nothing
         if target.overlap > MOST_OVERLAP and not self.settings.allow_overlap:
             raise Refused(
                 f'{target.overlap:.1%} of the UV map "{arrays.uv_map}" of "{target.name}" is used '
@@ -450,25 +497,29 @@ class Bake:
     def _bakers_for(self, target, matrix):
         """Bakers whose rest state is measured in the metric of the object at this frame."""
         metric = np.eye(3) if matrix is None else matrix.T @ matrix
-        if target.bakers and np.abs(metric - target.metric).max() <= METRIC_TOLERANCE:
+        known = target.prepared is not None
+        if known and np.abs(metric - target.metric).max() <= METRIC_TOLERANCE:
             return
         self._close(target)
         positions = target.arrays.positions
         if matrix is not None:
             positions = transformed(positions, matrix)
-        rest = self.ltmd.RestState(target.mesh, positions)
+        target.prepared = self.ltmd.RestState(target.mesh, positions)
         target.metric = metric
-        for tile in target.tiles:
+        for tile in target.tiles if self.settings.passes else ():
             baker = self.ltmd.SequenceBaker(
                 target.mesh,
-                rest,
+                target.prepared,
                 self.settings.width,
                 self.settings.height,
                 passes=list(self.settings.passes),
                 margin=self.settings.margin,
                 tile=tile,
                 compression=self.settings.compression,
+                half=self.settings.half,
+                mantissa_bits=self.settings.mantissa_bits,
                 metadata=self._metadata(target, tile),
+                **target.lobe,
             )
             target.bakers[tile] = baker
             target.coverage[naming.udim(tile)] = dict(baker.coverage_report)
@@ -488,7 +539,14 @@ class Bake:
         """Waits for the writers and checks every written file."""
         for target in self.targets:
             self._close(target)
-            if not target.todo:
+            if self.settings.usd:
+                written = [self._usd_path(target, frame) for frame in sorted(target.todo)]
+                self.problems += [
+                    f"{path}: cannot be read: bake it again"
+                    for path in written
+                    if usd.metadata(path) is None
+                ]
+            if not target.todo or not self.settings.passes:
                 continue
             names = {
                 os.path.basename(path)[: -len(".0000.exr")]
@@ -502,7 +560,6 @@ class Bake:
         settings = self.settings
         return {
             "ltmd:convention": CONVENTION,
-            "ltmd:pass": settings.passes[0],
             "ltmd:object": target.name,
             "ltmd:uv_map": target.uv_map,
             "ltmd:frame_start": str(min(settings.frames)),
@@ -513,6 +570,15 @@ class Bake:
             "ltmd:margin": str(settings.margin),
             "ltmd:version": self.ltmd.__version__,
         }
+
+    def _usd_metadata(self, target, frame):
+        left_out = ("ltmd:udim", "ltmd:margin", "ltmd:frame_start", "ltmd:frame_end")
+        values = self._metadata(target, (0, 0)) | {"ltmd:frame": str(frame), "ltmd:pass": "tension"}
+        return {key: value for key, value in values.items() if key not in left_out}
+
+    def _usd_path(self, target, frame):
+        name = naming.file_name(target.stem, "tension", frame)
+        return os.path.join(self.folder, name.removesuffix(".exr") + ".usdc")
 
     def _paths(self, target, tiles, frame):
         """{tile: {pass: path}} of a frame."""
@@ -559,7 +625,9 @@ class Bake:
         """If asked, turns the materials to the files; on the main thread."""
         if self.status != "ok":
             return
-        if self.settings.switch:
+        if self.settings.switch and "tension" not in self.settings.passes:
+            self.told.append("The materials stay as they are: only the pass tension turns them")
+        elif self.settings.switch:
             for target in self.targets:
                 self._switch(target)
 
@@ -567,7 +635,7 @@ class Bake:
         obj = self._find(bpy.data.objects, target.uid)
         frames = sorted(set(self.settings.frames))
         files = {
-            naming.udim(tile): {"path": paths[PASSES[0]], "frames": frames}
+            naming.udim(tile): {"path": paths["tension"], "frames": frames}
             for tile, paths in self._paths(target, target.tiles, frames[0]).items()
         }
         # The material must look the images up with the map they are laid out in.
@@ -596,6 +664,7 @@ class Bake:
             "version": getattr(getattr(self, "ltmd", None), "__version__", None),
             "folder": self.folder,
             "frames": sorted(set(self.settings.frames)),
+            "passes": list(self.settings.passes),
             "files": files,
             "skipped": [path for target in self.targets for path in target.skipped],
             "seconds": round(time.monotonic() - self.started, 3),
@@ -645,6 +714,34 @@ def object_rest(obj):
         shape = settings.rest_object
         return rest_state.Spec("object", object=shape.name if shape is not None else "")
     return rest_state.Spec()
+
+
+def lobe_of(obj, alpha=None):
+    """The lobe at rest of the object's first set-up material, as arguments of SequenceBaker."""
+    ltmd = library.ltmd()
+    values = {"Roughness": 0.5, "Stretch": 0.0, "Rotation": 0.0, "Shear": 0.0}
+    values |= {"Strength": 1.0, "Height Response": 0.0}
+    for material in source.materials(obj)[:1]:
+        node = surface.lobe(material)
+        if node is not None:
+            values = {
+                key: node.inputs[key].default_value if key in node.inputs else value
+                for key, value in values.items()
+            }
+    stretch = min(max(values["Stretch"], -0.99), 0.99)
+    # The shader's alpha is the square of its roughness; mirrors have none to speak of.
+    own = max(values["Roughness"], 0.01) ** 2
+    return {
+        "alpha": alpha or (own, own),
+        "M0": ltmd.material_matrix(stretch, values["Rotation"], values["Shear"]),
+        "strength": max(values["Strength"], 0.0),
+        "height_response": values["Height Response"],
+    }
+
+
+def lobe_numbers(lobe):
+    """The numbers of a lobe in the order of LOBE_KEYS."""
+    return [*lobe["alpha"], *lobe["M0"].ravel(), lobe["strength"], lobe["height_response"]]
 
 
 def metric_matrix(matrix_world):
@@ -761,15 +858,36 @@ class LTMD_OT_bake(bpy.types.Operator):
         description="Folder of the images; empty: the setting of the object",
         options={"SKIP_SAVE"},
     )
+    passes: EnumProperty(
+        name="Passes",
+        description="What to bake; none: the setting of the active object",
+        items=PASS_ITEMS,
+        options={"ENUM_FLAG", "SKIP_SAVE"},
+    )
     compression: EnumProperty(
         name="Compression",
         description="Compression of the EXR files, none of them loses anything",
         items=(
             ("zip", "ZIP", "16 rows at a time"),
             ("zips", "ZIPS", "One row at a time"),
+            ("piz", "PIZ", "Wavelets"),
             ("none", "None", "Fastest to write, largest files"),
         ),
         default="zip",
+        options={"SKIP_SAVE"},
+    )
+    half: BoolProperty(
+        name="Half Float",
+        description="Store 16 bits a number: a tenth of the size, off by up to 0.05 %",
+        default=False,
+        options={"SKIP_SAVE"},
+    )
+    mantissa_bits: IntProperty(
+        name="Mantissa Bits",
+        description="Round the numbers to so many bits, for smaller files; 0: keep them all",
+        default=0,
+        min=0,
+        max=23,
         options={"SKIP_SAVE"},
     )
     allow_overlap: BoolProperty(
@@ -871,7 +989,10 @@ class LTMD_OT_bake(bpy.types.Operator):
             height=self.size or own.size,
             margin=self.margin if self.margin >= 0 else own.margin,
             folder=self.directory or own.directory,
+            passes=tuple(name for name in PASSES if name.upper() in (self.passes or own.passes)),
             compression=self.compression,
+            half=self.half,
+            mantissa_bits=self.mantissa_bits or None,
             allow_overlap=self.allow_overlap,
             resume=self.resume,
             switch=self.switch,

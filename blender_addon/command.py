@@ -60,6 +60,32 @@ def _margin(text):
     return int(text)
 
 
+def _passes(text):
+    names = [name for name in text.split(",") if name]
+    for name in names:
+        if name not in bake.PASSES:
+            raise argparse.ArgumentTypeError(
+                f"there is no pass {name!r}, choose from {', '.join(bake.PASSES)}"
+            )
+    return names
+
+
+def _mantissa_bits(text):
+    if not text.isdigit() or not 1 <= int(text) <= 23:
+        raise argparse.ArgumentTypeError(f"mantissa bits are 1 to 23, not {text!r}")
+    return int(text)
+
+
+def _alpha(text):
+    try:
+        values = [float(part) for part in text.split(",")]
+    except ValueError:
+        values = []
+    if not 1 <= len(values) <= 2 or not all(0 < value < 1e3 for value in values):
+        raise argparse.ArgumentTypeError(f"alpha is one or two numbers above 0, not {text!r}")
+    return values[0], values[-1]
+
+
 def make_parser():
     parser = argparse.ArgumentParser(
         prog="ltmd",
@@ -92,12 +118,37 @@ def make_parser():
     baking.add_argument("--size", type=_size, default=1024, help="pixels (default: 1024)")
     baking.add_argument("--margin", type=_margin, default=16, help="pixels (default: 16)")
     baking.add_argument(
-        "--pass", dest="passes", action="append", choices=bake.PASSES, help="default: tension"
+        "--pass",
+        dest="passes",
+        action="extend",
+        type=_passes,
+        metavar="NAME[,NAME…]",
+        help=f"of {', '.join(bake.PASSES)} (default: tension); may be repeated",
+    )
+    baking.add_argument(
+        "--alpha",
+        type=_alpha,
+        metavar="X[,Y]",
+        help="of the passes alpha2 and roughness at rest (default: the material's roughness²)",
+    )
+    baking.add_argument(
+        "--usd",
+        action="store_true",
+        help="a .usdc a frame: the mesh with the tension as primvar; no images without --pass",
     )
     baking.add_argument(
         "--out", metavar="DIR", default="//ltmd/", help="default: //ltmd/, beside the scene file"
     )
-    baking.add_argument("--compression", choices=("zip", "zips", "none"), default="zip")
+    baking.add_argument("--compression", choices=bake.COMPRESSIONS, default="zip")
+    baking.add_argument(
+        "--half", action="store_true", help="16-bit float: smaller, off by ≤ 0.05 %%"
+    )
+    baking.add_argument(
+        "--mantissa-bits",
+        type=_mantissa_bits,
+        metavar="1-23",
+        help="round to so many bits for smaller files (default: keep all)",
+    )
     baking.add_argument("--json", action="store_true", help="print one JSON report on stdout")
     baking.add_argument(
         "--enable-autoexec", action="store_true", help="let the scene file run its Python drivers"
@@ -170,9 +221,13 @@ def _bake(options, report, stop):
         width=options.size,
         height=options.size,
         margin=options.margin,
-        passes=tuple(options.passes or bake.PASSES),
+        passes=tuple(dict.fromkeys(options.passes or (() if options.usd else bake.DEFAULT_PASSES))),
         folder=_folder(options.out),
         compression=options.compression,
+        half=options.half,
+        mantissa_bits=options.mantissa_bits,
+        alpha=options.alpha,
+        usd=options.usd,
         allow_overlap=options.allow_overlap,
         resume=options.resume,
     )

@@ -18,6 +18,14 @@ REST_MODES = (
     ("OBJECT", "Object", "The surface of another object with the same topology"),
 )
 
+PASS_ITEMS = (
+    ("TENSION", "Tension", "The deformation itself: what the LTMD materials read", 1),
+    ("STRETCH", "Stretch", "Largest and smallest stretch, and the area; for masks", 2),
+    ("WRINKLE", "Wrinkle", "Stretch along U and V, and the shear angle; for wrinkle maps", 4),
+    ("ALPHA2", "Alpha²", "The deformed highlight as a matrix, for other renderers", 8),
+    ("ROUGHNESS", "Roughness", "The deformed highlight as two roughnesses and a direction", 16),
+)
+
 
 def _is_mesh(_self, obj):
     return obj.type == "MESH"
@@ -55,6 +63,14 @@ class LtmdObjectSettings(bpy.types.PropertyGroup):
         name="UV Map",
         description="The UV map to bake into; empty: the map active for render",
         default="",
+        override=OVERRIDABLE,
+    )
+    passes: EnumProperty(
+        name="Passes",
+        description="What to bake, each into its own files",
+        items=PASS_ITEMS,
+        options={"ENUM_FLAG"},
+        default={"TENSION"},
         override=OVERRIDABLE,
     )
     size: IntProperty(

@@ -90,6 +90,7 @@ def test_the_package_imports_numpy_at_most():
 
 def test_the_extension_reaches_the_library_in_one_place():
     known = {"bpy", "mathutils", "numpy", "bl_ui", "_cycles", "addon_utils", "bpy_extras", "gpu"}
+    known.add("pxr")  # Blender brings it
     for path in files("blender_addon", ".py"):
         for level, name in imports(path):
             top = name.partition(".")[0]
