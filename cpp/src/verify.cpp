@@ -131,11 +131,17 @@ private:
             file.metadata.reset();
             report_.problems.push_back(error.what());
         }
-        const auto [found, is_new] =
-            sequences_[parsed->sequence].emplace(parsed->frame, std::move(file));
+        // A still of a UDIM tile, face_tension.1001.exr, is a sequence of its own with one frame.
+        std::string sequence = parsed->sequence;
+        int frame = parsed->frame;
+        if (stated(file, "ltmd:udim") == frame && !stated(file, "ltmd:frame")) {
+            sequence += "." + std::to_string(frame);
+            frame = 0;
+        }
+        const auto [found, is_new] = sequences_[sequence].emplace(frame, std::move(file));
         if (!is_new)
-            problem(parsed->sequence, frame_text(parsed->frame) + " has two files, " +
-                                          found->second.name + " and " + name + ": delete one");
+            problem(sequence, frame_text(frame) + " has two files, " + found->second.name +
+                                  " and " + name + ": delete one");
     }
 
     /// Names the missing ones of `expected` frames, runs of neighbours together.

@@ -370,6 +370,14 @@ def test_overlap_can_be_allowed(tmp_path):
     assert "warning" in run(*arguments, "--allow-overlap").stderr
 
 
+def test_stills_of_tiles_are_no_frames(tmp_path, tube):
+    paths = tmp_path / "rest.obj", tmp_path / "face.0007.obj"
+    out = tmp_path / "out/tube.<UDIM>.exr"
+    run("tension", *paths, "-o", out, "--size", 8, "--tile", "1001,1003")
+    said = run("verify", tmp_path / "out").stdout
+    assert "tube.1001: 1 frame" in said and "tube.1003: 1 frame" in said
+
+
 def test_a_folder_that_cannot_be_written(tmp_path, tube):
     (tmp_path / "file").write_text("")
     paths = tmp_path / "rest.obj", tmp_path / "face.0007.obj"

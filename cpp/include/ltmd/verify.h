@@ -21,6 +21,9 @@ struct VerifyReport {
 /// characters: 0007, or -007 before 0) with `ltmd:convention`. Others are not ours and ignored,
 /// unless they have such a name and are unreadable.
 ///
+/// A still of a UDIM tile, `<name>.<udim>.exr` without `ltmd:frame`, is frame 0 of a sequence of
+/// its own, `<name>.<udim>`.
+///
 /// Each frame is present (a missing one would render as the identity) and once, has the number that
 /// its header states, and can be read whole; all frames of a sequence have one size and one
 /// convention, pass, `ltmd:per`, UV map, rest state and lobe; all values are finite and possible
