@@ -105,12 +105,13 @@ class LtmdObjectSettings(bpy.types.PropertyGroup):
         min=0,
         override=OVERRIDABLE,
     )
-    # No DIR_PATH options beyond the subtype: BLEND_RELATIVE_... is not in 4.5, "//" works as text.
     directory: StringProperty(
         name="Output Folder",
         description="Folder for the baked images; // is the folder of the saved file",
         default="//ltmd/",
         subtype="DIR_PATH",
+        # Else the field is red until the first bake has made the folder.
+        options={"OUTPUT_PATH", "PATH_SUPPORTS_BLEND_RELATIVE"},
         override=OVERRIDABLE,
     )
     slot_added: BoolProperty(

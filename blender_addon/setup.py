@@ -60,6 +60,11 @@ def set_up(obj, live=False):
     """
     if not is_writable(obj):
         raise source.SourceError(f"{obj.name}: {REFUSAL}")
+    if not bpy.app.build_options.cycles_osl:
+        raise source.SourceError(
+            "This Blender is built without Open Shading Language, which LTMD materials need; "
+            "the builds of blender.org have it"
+        )
     told = source.store_rest(obj)
     textures = obj.ltmd.source == "TEXTURE" and not live
     if not any(slot.material for slot in obj.material_slots):

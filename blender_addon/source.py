@@ -197,6 +197,10 @@ def switch_to_texture(obj, material, files):
     files: {udim: {"path": file of the first frame, "frames": sorted numbers, ...}}. Files are
     numbered like the scene's frames. A material that other objects show becomes a copy for obj.
     """
+    try:
+        nodes.ensure(texture_tension)
+    except RuntimeError as error:
+        return [f"The material {material.name} stays as it is: {error}"]
     told = []
     others = [other.name for other in users(material) if other != obj]
     if others:
