@@ -1,6 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Prints the budgets of the geometry branch as ratios measured in one run. tests/bench/run.sh [OPTIONS of geometry.py]
+# Prints the budgets of the geometry branch as ratios measured in one run, or runs another benchmark of this folder.
+#   tests/bench/run.sh [OPTIONS of geometry.py]
+#   tests/bench/run.sh growth [OPTIONS of growth.py]
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 # shellcheck source=tests/environment.sh
@@ -10,4 +12,7 @@ ltmd_venv_tools
 ltmd_venv_blender
 ltmd_openexr
 ltmd_wheel
+if [ -e "tests/bench/${1:-}.py" ]; then
+    exec "$LTMD_TOOLS/bin/python" "tests/bench/$1.py" "${@:2}"
+fi
 exec "$LTMD_TOOLS/bin/python" tests/bench/geometry.py --blender-python "$LTMD_BPY/bin/python" "$@"
