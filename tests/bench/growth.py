@@ -106,10 +106,10 @@ def draw(axes, amounts, series, what):
             linestyle=":",
             linewidth=1,
         )
-    axes.set_xlabel(what)
+    axes.set_xlabel(what, loc="right", labelpad=0)
     axes.set_ylabel("seconds")
     axes.grid(True, which="major", alpha=0.3)
-    axes.legend(frameon=False)
+    axes.legend(frameon=False, loc="upper center", bbox_to_anchor=(0.5, -0.15), ncols=2)
 
 
 def main():
@@ -122,7 +122,7 @@ def main():
     if options.quick:
         counts, sizes = counts[:4], sizes[:3]
     print(f"load of the machine before the run: {os.getloadavg()[0]:.1f}")
-    figure, (left, right) = pyplot.subplots(1, 2, figsize=(10, 4.2), layout="constrained")
+    figure, (left, right) = pyplot.subplots(1, 2, figsize=(10, 5), layout="constrained")
     draw(left, *grow_mesh(counts), "triangles")
     left.set_title("growth with the mesh, coverage at 1024²")
     draw(right, *grow_texture(sizes), "texels")

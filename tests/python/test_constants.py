@@ -122,6 +122,8 @@ def test_bounds_of_stretch():
 def test_pass_names_and_what_they_hold_undeformed(tmp_path):
     rows = {names(row[0])[0]: row for row in table("pass")}
     assert list(rows) == list(ltmd.passes)
+    offered = assigned("blender_addon/properties.py", "PASS_ITEMS")
+    assert [item[0].lower() for item in offered] == list(rows)
     shape = meshes.grid(2, 2)
     mesh = shape.mesh()
     # A tile that no face reaches is all undeformed; half the faces of the mesh's own are.
@@ -178,6 +180,7 @@ def stub_alias(name):
 def test_codecs():
     said = re.search(r"Codecs are lossless \(([^)]+)\)", CONTRACT)[1].lower().split(", ")
     assert set(said) == set(typing.get_args(stub_alias("Compression")))
+    assert set(said) == set(assigned("blender_addon/bake.py", "COMPRESSIONS"))
 
 
 def test_default_margin():
@@ -240,6 +243,7 @@ def test_udim_formula():
 def test_attribute_names():
     said = {names(row[0])[0] for row in table("name")}
     assert assigned("blender_addon/nodes/live_tension.py", "REST_ATTRIBUTE") in said
+    assert assigned("blender_addon/usd.py", "PRIMVAR") in said
     attribute = re.compile(r"[\"'](ltmd_(?:rest|tension|tensor)(?:_(?:off_)?diagonal)?)[\"']")
     for path in sources("blender_addon/**/*.py"):
         # The shaders' names are no attributes.
