@@ -57,11 +57,13 @@ def test_every_pass_has_its_numbers_and_metadata(scene, tmp_path):
         codes = [command.main(asked), command.main([*asked, "--resume"]),
                  command.main([*asked, "--resume", "--alpha", "0.3"]),
                  command.main(asked), command.main(["verify", folder])]
-        report(codes=codes)
+        from blender_addon import bake, library
+        report(codes=codes, passes=bake.PASSES, known=library.ltmd().passes)
         """,
         arguments=[str(scene), str(tmp_path)],
     )
     assert got["codes"] == [0] * 5, got["_output"]
+    assert got["passes"] == got["known"] == list(PASSES)
     output = got["_output"]
     assert output.count("10 files written, 0 kept") == 3, output
     assert output.count("0 files written, 10 kept") == 1
