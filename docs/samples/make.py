@@ -78,10 +78,26 @@ def expected(file, uv, t):
     }
 
 
+def passes(t, alpha, m0):
+    """R, G, B, A of every pass."""
+    inverse = np.linalg.inv(t @ np.asarray(m0, float))
+    sigma = inverse.T @ np.diag(np.square(alpha)) @ inverse
+    alpha_x, alpha_y, angle = lobe(t, alpha, m0)
+    largest, smallest = np.linalg.svd(t, compute_uv=False)
+    shear = np.arctan2(t[0, 1], t[1, 1])
+    return {
+        "tension": [t[0, 0], t[0, 1], t[1, 1], 1],
+        "stretch": [largest, smallest, np.linalg.det(t), 1],
+        "wrinkle": [t[0, 0], np.hypot(t[0, 1], t[1, 1]), shear, 1],
+        "alpha2": [sigma[0, 0], sigma[0, 1], sigma[1, 1], 1],
+        "roughness": [alpha_x, alpha_y, np.cos(2 * angle), np.sin(2 * angle)],
+    }
+
+
 def swatches(folder):
     """Four charts in one texture; frame 1 is the rest state, frame 2 deformed."""
     uv = np.concatenate([chart_uv(quarter) for quarter in range(len(CHARTS))])
-    rest, moved, triangles, points = [], [], [], []
+    rest, moved, triangles, points, texels = [], [], [], [], []
     for quarter, (corners, matrix) in enumerate(CHARTS.values()):
         place = corners + (3 * quarter, 0)
         rest.append(np.c_[place, [0] * 4])
@@ -100,6 +116,10 @@ def swatches(folder):
                 expected("swatches_tension.0001.exr", at, np.eye(2)),
                 expected("swatches_tension.0002.exr", at, t),
             ]
+            for frame, matrix_t in ((1, np.eye(2)), (2, t)):
+                for name, values in passes(matrix_t, **LOBES[-1]).items():
+                    file = f"swatches_{name}.{frame:04d}.exr"
+                    texels.append({"file": file, "uv": list(at), "values": values})
     rest, moved = (np.concatenate(p).astype(np.float32) for p in (rest, moved))
     mesh = ltmd.Mesh(
         np.array(triangles, np.int32),
@@ -115,11 +135,22 @@ def swatches(folder):
         "ltmd:frame_end": 2,
         "ltmd:margin": MARGIN,
     }
-    with ltmd.SequenceBaker(mesh, rest, SIZE, SIZE, margin=MARGIN, metadata=metadata) as baker:
+    names = list(passes(np.eye(2), **LOBES[-1]))
+    with ltmd.SequenceBaker(
+        mesh,
+        rest,
+        SIZE,
+        SIZE,
+        names,
+        margin=MARGIN,
+        metadata=metadata,
+        alpha=LOBES[-1]["alpha"],
+        M0=LOBES[-1]["m0"],
+    ) as baker:
         for frame, positions in ((1, rest), (2, moved)):
-            path = folder / f"swatches_tension.{frame:04d}.exr"
-            baker.frame(positions, {"tension": path}, metadata={"ltmd:frame": frame})
-    return points
+            paths = {name: folder / f"swatches_{name}.{frame:04d}.exr" for name in names}
+            baker.frame(positions, paths, metadata={"ltmd:frame": frame})
+    return points, texels
 
 
 def gradient(folder):
@@ -159,10 +190,12 @@ def gradient(folder):
 
 def main(folder):
     folder = pathlib.Path(folder)
-    points = swatches(folder) + gradient(folder)
-    lines = ",\n".join(json.dumps(point) for point in points)
+    points, texels = swatches(folder)
+    points += gradient(folder)
+    lines = [",\n".join(json.dumps(entry) for entry in entries) for entries in (points, texels)]
     (folder / "expected.json").write_text(
-        f'{{"convention": {ltmd.convention}, "points": [\n{lines}\n]}}\n'
+        f'{{"convention": {ltmd.convention}, "points": [\n{lines[0]}\n], '
+        f'"passes": [\n{lines[1]}\n]}}\n'
     )
 
 

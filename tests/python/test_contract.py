@@ -32,12 +32,11 @@ def local_uv(point):
 
 
 def pixels(name):
-    """R, G, B of a sample by the OpenEXR wheel, row 0 = top."""
+    """R, G, B, A of a sample by the OpenEXR wheel, row 0 = top."""
     with OpenEXR.File(str(SAMPLES / name), separate_channels=True) as file:
         channels = file.channels()
         assert all(channels[c].pixels.dtype == np.float32 for c in "RGBA")
-        assert (channels["A"].pixels == 1).all()
-        return np.stack([channels[c].pixels for c in "RGB"], axis=2)
+        return np.stack([channels[c].pixels for c in "RGBA"], axis=2)
 
 
 def read(image, u, v):
@@ -85,6 +84,8 @@ def test_the_samples_are_what_the_script_makes(tmp_path):
         made, kept = (ltmd.exr_metadata(folder / name) for folder in (tmp_path, SAMPLES))
         assert {**made, "ltmd:version": ""} == {**kept, "ltmd:version": ""}
     made = json.loads((tmp_path / "expected.json").read_text())
+    for new, old in zip(made["passes"], EXPECTED["passes"], strict=True):
+        assert new["file"] == old["file"] and np.allclose(new["values"], old["values"], rtol=1e-9)
     assert made["convention"] == EXPECTED["convention"] == ltmd.convention
     for new, old in zip(made["points"], POINTS, strict=True):
         assert new["file"] == old["file"] and np.allclose(new["uv"], old["uv"], rtol=1e-12)
@@ -96,13 +97,16 @@ def test_the_samples_are_small_and_whole():
     assert sum((SAMPLES / name).stat().st_size for name in FILES) < 50_000
     assert ltmd.verify(SAMPLES).problems == []
     # Each expected point is in a sample, and each sample has points.
-    assert sorted({point["file"] for point in POINTS}) == FILES
+    assert sorted({point["file"] for point in POINTS + EXPECTED["passes"]}) == FILES
 
 
 def test_a_float64_reader_gives_the_expected_numbers():
     images = {name: pixels(name) for name in FILES}
+    for point in EXPECTED["passes"]:
+        values = read(images[point["file"]], *local_uv(point))
+        np.testing.assert_allclose(values, point["values"], rtol=1e-6, atol=1e-6)
     for point in POINTS:
-        t = read(images[point["file"]], *local_uv(point))
+        t = read(images[point["file"]], *local_uv(point))[:3]
         np.testing.assert_allclose(t, point["tension"], rtol=1e-6, atol=1e-6)
     actual = [lobe(read(images[p["file"]], *local_uv(p)), c["alpha"], c["m0"]) for p, c in cases()]
     assert_lobes(actual, [c["lobe"] for _, c in cases()], 1e-5)
@@ -134,8 +138,8 @@ def run_glsl(gpu, image, uv, alpha, m0):
         }""",
         varyings=["tension", "lobe"],
     )
-    height, width, _ = image.shape
-    texture = gpu.texture((width, height), 3, image.tobytes(), dtype="f4")
+    height, width, channels = image.shape
+    texture = gpu.texture((width, height), channels, image.tobytes(), dtype="f4")
     # A reader must not depend on the sampler's filter.
     texture.filter = (moderngl.NEAREST, moderngl.NEAREST)
     texture.use(0)
@@ -150,7 +154,7 @@ def run_glsl(gpu, image, uv, alpha, m0):
 
 
 def test_the_glsl_reader_gives_the_expected_numbers(gpu):
-    for name in FILES:
+    for name in sorted({point["file"] for point in POINTS}):
         found = [(point, case) for point, case in cases() if point["file"] == name]
         tension, lobes = run_glsl(
             gpu,
