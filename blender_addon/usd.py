@@ -7,7 +7,7 @@ bake; its own USD library writes what is evaluated.
 
 import contextlib
 import os
-import tempfile
+import secrets
 
 import bpy
 import numpy as np
@@ -45,8 +45,8 @@ def write(path, name, points, matrix, face_sizes, corner_vert, uv, tension, meta
     """
     pxr = _pxr()
     sdf, vt, geom = pxr.Sdf, pxr.Vt, pxr.UsdGeom
-    handle, temporary = tempfile.mkstemp(".usdc", ".ltmd-", os.path.dirname(path))
-    os.close(handle)
+    # Not tempfile: its files are for one user alone.
+    temporary = os.path.join(os.path.dirname(path), f".ltmd-{secrets.token_hex(8)}.usdc")
     try:
         stage = pxr.Usd.Stage.CreateInMemory()
         geom.SetStageUpAxis(stage, UP)

@@ -165,6 +165,7 @@ def test_usd_holds_the_tension_as_a_primvar(scene, tmp_path):
     assert "0 files written, 2 kept" in got["_output"]
     assert got["names"] == ["Sheet_tension.0001.usdc", "Sheet_tension.0002.usdc"]
     assert len(os.listdir(tmp_path)) == 4
+    assert len({os.stat(tmp_path / name).st_mode for name in os.listdir(tmp_path)}) == 1
     assert got["type"] == "float3[]" and got["interpolation"] == "faceVarying"
     assert got["points"] == 25 and got["sizes"] == [4] * 16 and got["axis"] == "Z"
     assert got["layer"]["ltmd:convention"] == "1" and got["layer"]["ltmd:frame"] == "2"
@@ -173,3 +174,37 @@ def test_usd_holds_the_tension_as_a_primvar(scene, tmp_path):
     assert np.allclose(got["tension"], (2, 0.25, 0.5), atol=1e-6)
     assert got["kind"] == ["FLOAT_VECTOR", "CORNER"]
     assert np.allclose(got["imported"], (2, 0.25, 0.5), atol=1e-6)
+
+
+def test_usd_that_cannot_be_written_fails_in_words(scene, tmp_path):
+    got = run(
+        """
+        from blender_addon import command
+        scene, folder = ARGUMENTS
+        os.mkdir(os.path.join(folder, "Sheet_tension.0002.usdc"))
+        code = command.main(["bake", scene, "--object", "Sheet", "--out", folder, "--usd"])
+        report(code=code)
+        """,
+        arguments=[str(scene), str(tmp_path)],
+    )
+    assert got["code"] == 4, got["_output"]
+    assert "Sheet_tension.0002.usdc" in got["_output"]
+    assert sorted(os.listdir(tmp_path)) == ["Sheet_tension.0001.usdc", "Sheet_tension.0002.usdc"]
+
+
+def test_usd_needs_no_uv_map_without_overlap(tmp_path):
+    got = run(
+        """
+        from bake_scenes import *
+        obj = sheet("Sheet")
+        for corner in obj.data.uv_layers[0].uv:
+            corner.vector = (corner.vector[0] % 0.5, corner.vector[1])
+        keyed_shape(obj, lambda p: p * (2, 1, 1), frames=(1, 2))
+        refused = refusal([obj], [2], ARGUMENTS)
+        work = bake([obj], [2], ARGUMENTS, passes=(), usd=True)
+        report(refused=refused, status=work.status, files=work.report()["files"])
+        """,
+        arguments=str(tmp_path),
+    )
+    assert "more than one place" in got["refused"]
+    assert got["status"] == "ok" and len(got["files"]) == 1
