@@ -3,76 +3,71 @@
 
 #include <tiny_obj_loader.h>
 
-#include <algorithm>
+#include <array>
 #include <filesystem>
 #include <fstream>
 
 #include "errors.h"
+#include "polygon.h"
 
 namespace ltmd::cli {
 namespace {
 
+/// What a file says, faces with their corners one after another; -1: no texture coordinate.
 struct ObjFile {
-    tinyobj::attrib_t attributes;
-    std::vector<tinyobj::index_t> corners;  ///< Of all faces, one face after another.
-    std::size_t faces = 0;
+    std::vector<Vec3f> positions;
+    std::vector<Vec2f> uvs;
+    std::vector<std::size_t> face_sizes;
+    std::vector<std::int32_t> vert, uv;
+    std::string problem;  ///< The first one.
 };
 
-ObjFile load(const std::string& path, bool triangulate) {
+/// Counted from 1, or backwards from the last one read; -1 and a problem when there is none.
+std::int32_t index_of(int written, std::size_t count, const char* what, std::string& problem) {
+    const auto end = static_cast<std::int64_t>(count);
+    const std::int64_t index = written > 0 ? written - 1 : end + written;
+    if (written != 0 && index >= 0 && index < end) return static_cast<std::int32_t>(index);
+    if (problem.empty())
+        problem = "a face uses " + std::string(what) + " " + std::to_string(written) + " of " +
+                  std::to_string(count);
+    return -1;
+}
+
+void add_face(void* data, tinyobj::index_t* corners, int count) {
+    auto& file = *static_cast<ObjFile*>(data);
+    if (count < 3) return;
+    file.face_sizes.push_back(static_cast<std::size_t>(count));
+    for (int i = 0; i < count; ++i) {
+        const int uv = corners[i].texcoord_index;
+        file.vert.push_back(
+            index_of(corners[i].vertex_index, file.positions.size(), "vertex", file.problem));
+        file.uv.push_back(
+            uv == 0 ? -1 : index_of(uv, file.uvs.size(), "texture coordinate", file.problem));
+    }
+}
+
+ObjFile load(const std::string& path) {
     std::ifstream stream{std::filesystem::path(path), std::ios::binary};
     std::error_code error;
     if (!stream || std::filesystem::is_directory(path, error))
         throw BadInput(path + ": cannot be read" +
                        (std::filesystem::exists(path, error) ? "" : " (there is no such file)"));
     ObjFile file;
-    std::vector<tinyobj::shape_t> shapes;
-    std::vector<tinyobj::material_t> materials;
+    tinyobj::callback_t callbacks;
+    callbacks.vertex_cb = [](void* data, float x, float y, float z, float) {
+        static_cast<ObjFile*>(data)->positions.push_back({x, y, z});
+    };
+    callbacks.texcoord_cb = [](void* data, float u, float v, float) {
+        static_cast<ObjFile*>(data)->uvs.push_back({u, v});
+    };
+    callbacks.index_cb = add_face;
+    // Without a reader of materials a missing .mtl file is no problem.
     std::string warning, problem;
-    // No material reader: a missing .mtl file is no problem here.
-    const bool read = tinyobj::LoadObj(&file.attributes, &shapes, &materials, &warning, &problem,
-                                       &stream, nullptr, triangulate, false);
-    if (!read || !problem.empty()) {
-        problem.erase(std::find(problem.begin(), problem.end(), '\n'), problem.end());
-        throw BadInput(path + ": is not a valid OBJ file" +
-                       (problem.empty() ? "" : " (" + problem + ")"));
-    }
-    for (const tinyobj::shape_t& shape : shapes) {
-        file.corners.insert(file.corners.end(), shape.mesh.indices.begin(),
-                            shape.mesh.indices.end());
-        file.faces += shape.mesh.num_face_vertices.size();
-    }
+    if (!tinyobj::LoadObjWithCallback(stream, callbacks, &file, nullptr, &warning, &problem))
+        throw BadInput(path + ": is not a valid OBJ file");
+    if (stream.bad()) throw BadInput(path + ": cannot be read to its end");
+    if (!file.problem.empty()) throw BadInput(path + ": " + file.problem);
     return file;
-}
-
-std::vector<Vec3f> positions_of(const ObjFile& file) {
-    const std::vector<float>& v = file.attributes.vertices;
-    std::vector<Vec3f> positions(v.size() / 3);
-    for (std::size_t i = 0; i < positions.size(); ++i)
-        positions[i] = {v[3 * i], v[3 * i + 1], v[3 * i + 2]};
-    return positions;
-}
-
-/// Throws when a face names a vertex or texture coordinate that the file does not have.
-void check_indices(const std::string& path, const ObjFile& file) {
-    const std::size_t vertices = file.attributes.vertices.size() / 3,
-                      uvs = file.attributes.texcoords.size() / 2;
-    for (const tinyobj::index_t& corner : file.corners) {
-        if (corner.vertex_index < 0 || static_cast<std::size_t>(corner.vertex_index) >= vertices)
-            throw BadInput(path + ": a face uses vertex " +
-                           std::to_string(corner.vertex_index + 1) + " of " +
-                           std::to_string(vertices));
-        if (corner.texcoord_index >= 0 && static_cast<std::size_t>(corner.texcoord_index) >= uvs)
-            throw BadInput(path + ": a face uses texture coordinate " +
-                           std::to_string(corner.texcoord_index + 1) + " of " +
-                           std::to_string(uvs));
-    }
-}
-
-std::vector<std::int32_t> vertices_of(const ObjFile& file) {
-    std::vector<std::int32_t> vertices;
-    vertices.reserve(file.corners.size());
-    for (const tinyobj::index_t& corner : file.corners) vertices.push_back(corner.vertex_index);
-    return vertices;
 }
 
 }  // namespace
@@ -82,59 +77,55 @@ MeshView ObjMesh::view() const {
 }
 
 ObjMesh read_rest(const std::string& path) {
+    ObjFile file = load(path);
+    if (file.face_sizes.empty()) throw BadInput(path + ": has no faces");
+    if (file.uvs.empty())
+        throw BadInput(path +
+                       ": has no texture coordinates (vt); unwrap the mesh and export it with UVs");
+    std::size_t without_uv = 0;
+    for (const std::int32_t uv : file.uv) without_uv += uv < 0;
+    if (without_uv > 0)
+        throw BadInput(path + ": has " + std::to_string(without_uv) +
+                       " face corners without a texture coordinate (vt); unwrap the whole mesh");
+
     ObjMesh mesh;
-    std::size_t whole = 0;
-    {
-        const ObjFile polygons = load(path, false);
-        check_indices(path, polygons);
-        if (polygons.faces == 0) throw BadInput(path + ": has no faces");
-        const auto without_uv =
-            std::count_if(polygons.corners.begin(), polygons.corners.end(),
-                          [](const tinyobj::index_t& c) { return c.texcoord_index < 0; });
-        if (without_uv > 0)
-            throw BadInput(path + ": has " +
-                           (polygons.attributes.texcoords.empty()
-                                ? std::string("no texture coordinates (vt)")
-                                : std::to_string(without_uv) +
-                                      " face corners without a texture coordinate (vt)") +
-                           "; unwrap the mesh and export it with UVs");
-        mesh.polygon_vert = vertices_of(polygons);
-        whole = polygons.corners.size() - 2 * polygons.faces;
+    mesh.corner_uv.reserve(file.uv.size());
+    for (const std::int32_t uv : file.uv)
+        mesh.corner_uv.push_back(file.uvs[static_cast<std::size_t>(uv)]);
+    std::vector<Vec3f> corners;
+    std::vector<std::array<std::size_t, 3>> cut;
+    std::size_t first = 0;
+    for (const std::size_t size : file.face_sizes) {
+        corners.clear();
+        cut.clear();
+        for (std::size_t i = 0; i < size; ++i)
+            corners.push_back(file.positions[static_cast<std::size_t>(file.vert[first + i])]);
+        cut_polygon(corners, cut);
+        for (const auto& [a, b, c] : cut)
+            mesh.triangles.push_back({static_cast<std::int32_t>(first + a),
+                                      static_cast<std::int32_t>(first + b),
+                                      static_cast<std::int32_t>(first + c)});
+        first += size;
     }
-    const ObjFile file = load(path, true);
-    mesh.positions = positions_of(file);
-    mesh.corner_vert = vertices_of(file);
-    mesh.triangles.resize(file.corners.size() / 3);
-    if (mesh.triangles.size() != whole)
-        throw BadInput(path + ": has polygons that cannot be cut into triangles (" +
-                       std::to_string(whole - mesh.triangles.size()) +
-                       " triangles would be missing); triangulate it before exporting");
-    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-        const auto first = static_cast<std::int32_t>(3 * t);
-        mesh.triangles[t] = {first, first + 1, first + 2};
-    }
-    const std::vector<float>& vt = file.attributes.texcoords;
-    mesh.corner_uv.reserve(file.corners.size());
-    for (const tinyobj::index_t& corner : file.corners) {
-        const auto i = 2 * static_cast<std::size_t>(corner.texcoord_index);
-        mesh.corner_uv.push_back({vt[i], vt[i + 1]});
-    }
+    mesh.positions = std::move(file.positions);
+    mesh.corner_vert = std::move(file.vert);
+    mesh.face_sizes = std::move(file.face_sizes);
     return mesh;
 }
 
 std::vector<Vec3f> read_deformed(const std::string& path, const ObjMesh& rest) {
-    const ObjFile file = load(path, false);
-    std::vector<Vec3f> positions = positions_of(file);
-    if (positions.size() != rest.positions.size())
-        throw BadInput(path + ": has " + std::to_string(positions.size()) +
-                       " vertices, the rest state has " + std::to_string(rest.positions.size()));
-    if (file.corners.size() != rest.polygon_vert.size())
-        throw BadInput(path + ": has " + std::to_string(file.corners.size()) +
-                       " face corners, the rest state has " +
-                       std::to_string(rest.polygon_vert.size()));
-    if (vertices_of(file) != rest.polygon_vert)
+    ObjFile file = load(path);
+    const auto require = [&](std::size_t ours, std::size_t theirs, const char* what) {
+        if (ours != theirs)
+            throw BadInput(path + ": has " + std::to_string(ours) + " " + what +
+                           ", the rest state has " + std::to_string(theirs));
+    };
+    require(file.positions.size(), rest.positions.size(), "vertices");
+    require(file.face_sizes.size(), rest.face_sizes.size(), "faces");
+    require(file.vert.size(), rest.corner_vert.size(), "face corners");
+    if (file.face_sizes != rest.face_sizes || file.vert != rest.corner_vert)
         throw BadInput(path + ": its faces join other vertices than those of the rest state");
-    return positions;
+    return std::move(file.positions);
 }
 
 }  // namespace ltmd::cli
