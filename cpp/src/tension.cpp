@@ -18,8 +18,10 @@ namespace {
 constexpr std::size_t grain = 1 << 12;
 constexpr int block_size = 256;
 
-// The widest vectors the machine has. Contraction is off, so all give the same bits.
-#if defined(__x86_64__) && defined(__linux__) && defined(__GNUC__) && !defined(__clang__)
+// The widest vectors the machine has. Contraction is off, so all give the same bits. The choice is
+// made while loading, before ThreadSanitizer is ready for it.
+#if defined(__x86_64__) && defined(__linux__) && defined(__GNUC__) && !defined(__clang__) && \
+    !defined(__SANITIZE_THREAD__)
 #define LTMD_WIDE __attribute__((target_clones("arch=x86-64-v4", "avx2", "default")))
 #else
 #define LTMD_WIDE
