@@ -30,6 +30,8 @@ TEST(LobeParameters, StretchingNarrowsTheLobeAlongIt) {
     const Vec3f along_v = parameters({1, 0, 4}, {.alpha_x = 0.2, .alpha_y = 0.2});
     EXPECT_FLOAT_EQ(along_v[0], 0.05f);
     EXPECT_FLOAT_EQ(along_v[2], std::numbers::pi_v<float> / 2);
+    // Just below pi, where rounding would leave the range.
+    EXPECT_EQ(parameters({2, -1e-9f, 1}, {.alpha_x = 0.2, .alpha_y = 0.2})[2], 0);
     const Vec3f squeezed = parameters({0.1f, 0, 0.1f}, {.alpha_x = 0.2, .alpha_y = 0.2});
     EXPECT_FLOAT_EQ(squeezed[0], 2);
     EXPECT_EQ(squeezed[0], squeezed[1]);
