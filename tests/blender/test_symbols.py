@@ -89,6 +89,22 @@ def test_a_round_trip_beside_a_host_whose_openexr_traps(hostile):
     assert done.returncode == 0 and "round trip done" in done.stdout, done.stderr
 
 
+def test_the_trap_catches_a_module_that_does_not_hide_its_openexr(hostile, tmp_path):
+    script = (
+        "import ctypes, sys, numpy, OpenEXR\n"
+        "assert ctypes.CDLL(None).exr_start_write\n"
+        "print('loaded', flush=True)\n"
+        "pixels = {'RGB': numpy.ones((4, 4, 3), 'f')}\n"
+        "OpenEXR.File({'type': OpenEXR.scanlineimage}, pixels).write(sys.argv[1])\n"
+    )
+    command = [sys.executable, "-c", script, tmp_path / "x.exr"]
+    done = subprocess.run(command, capture_output=True, text=True)
+    assert done.returncode != 0 and "exr_start_write" in done.stderr  # no trap, so not global
+    environment = dict(os.environ, LD_PRELOAD=str(hostile))
+    done = subprocess.run(command, env=environment, capture_output=True, text=True)
+    assert done.returncode < 0, (done.returncode, done.stdout, done.stderr)
+
+
 def test_a_round_trip_beside_another_openexr():
     script = """
 import os, sys
