@@ -92,6 +92,7 @@ def draw_bake(layout, context):
     pair.prop(settings, "frame_start", text="Frames, First")
     pair.prop(settings, "frame_end", text="Last")
     column.prop(settings, "directory")
+    column.column(align=True).prop(settings, "passes", expand=True)
 
     problem = library.problem()
     if problem:
