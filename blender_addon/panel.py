@@ -69,7 +69,8 @@ def draw(layout, context):
         for name in ("Roughness", "Stretch", "Rotation", "Strength", "Height Response"):
             socket = lobe.inputs[name]
             if not socket.is_linked:
-                column.prop(socket, "default_value", text=name)
+                # The whole of "Height Response" does not fit beside its field.
+                column.prop(socket, "default_value", text=name.removesuffix(" Response"))
 
 
 def draw_bake(layout, context):
