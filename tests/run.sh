@@ -4,7 +4,7 @@
 # the exit code is then 1.
 #   tests/run.sh [--fast | --long] [STAGE…]
 # --fast takes the installed tools as they are and leaves out the tests marked slow. --long adds the
-# stages sanitizers… (tests/long.sh) and window (a real Blender window).
+# stages long (tests/long.sh) and window (a real Blender window).
 # Stages: environment cpp ctest wheel extension format python osl4.5 osl5.2 blender4.5 blender5.2 both
 # (default: all, in this order); osl and blender name both versions.
 set -uo pipefail
