@@ -19,7 +19,7 @@ sid_root() {
     ltmd_packages debootstrap
     ltmd_say "making a Debian sid root with Blender in $SID (some minutes)"
     ltmd_as_root rm -rf "$SID"
-    ltmd_quiet ltmd_as_root debootstrap --variant=minbase --include=ca-certificates sid "$SID" http://deb.debian.org/debian
+    ltmd_quiet ltmd_as_root debootstrap --variant=minbase --include=ca-certificates sid "$SID"
     # A mirror may lag behind; what is installed is used for tests alone.
     inside sh -c 'echo "Acquire::Check-Valid-Until \"false\";" >/etc/apt/apt.conf.d/90ltmd'
     ltmd_quiet inside apt-get update
