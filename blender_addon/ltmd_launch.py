@@ -34,10 +34,22 @@ def _package():
     return package
 
 
+def _import_bpy():
+    """Blender may warn on stdout while it starts, where a JSON report must stand alone."""
+    saved = os.dup(1)
+    os.dup2(2, 1)
+    try:
+        importlib.import_module("bpy")
+    finally:
+        os.dup2(saved, 1)
+        os.close(saved)
+
+
 def main():
     if importlib.util.find_spec("bpy") is None:
         print("ltmd: this Python has no bpy: run the script inside Blender", file=sys.stderr)
         return 1
+    _import_bpy()
     # Blender's own arguments end at "--"; a plain Python has none of them.
     end = sys.argv.index("--") if "--" in sys.argv else 0
     command = importlib.import_module(f"{_package().__name__}.command")
