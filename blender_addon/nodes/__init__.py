@@ -70,6 +70,18 @@ def add_output(tree, name, kind, description):
     return socket
 
 
+def add_tension_outputs(tree):
+    """What every source of tension gives."""
+    add_output(
+        tree,
+        "Tension",
+        "Vector",
+        "How the surface is deformed from its rest state, for LTMD Glossy. 1, 0, 1 is the rest "
+        "state",
+    )
+    add_output(tree, "Tangent", "Vector", "Direction of the UV map's U on the surface")
+
+
 def ends(tree, x=600):
     """The group's input and output nodes."""
     start = tree.nodes.new("NodeGroupInput")

@@ -7,7 +7,7 @@ Attribute node reads from each object's own mesh, so one material serves many ob
 """
 
 from .. import osl_script
-from . import add_input, add_output, ends
+from . import add_input, add_tension_outputs, ends
 
 NAME = "LTMD Live Tension"
 VERSION = 1
@@ -16,14 +16,7 @@ REST_ATTRIBUTE = "ltmd_rest"
 
 
 def build(tree):
-    add_output(
-        tree,
-        "Tension",
-        "Vector",
-        "How the surface is deformed from its rest state, for LTMD Glossy. 1, 0, 1 is the rest "
-        "state",
-    )
-    add_output(tree, "Tangent", "Vector", "Direction of the UV map's U on the surface")
+    add_tension_outputs(tree)
     add_input(
         tree,
         "UV",

@@ -2,21 +2,14 @@
 """LTMD Texture Tension: the deformation, from one baked image; chain one per UDIM tile."""
 
 from .. import osl_script
-from . import add_input, add_output, ends
+from . import add_input, add_tension_outputs, ends
 
 NAME = "LTMD Texture Tension"
 VERSION = 1
 
 
 def build(tree):
-    add_output(
-        tree,
-        "Tension",
-        "Vector",
-        "How the surface is deformed from its rest state, for LTMD Glossy. 1, 0, 1 is the rest "
-        "state",
-    )
-    add_output(tree, "Tangent", "Vector", "Direction of the UV map's U on the surface")
+    add_tension_outputs(tree)
     add_input(
         tree,
         "Image",
