@@ -2,17 +2,11 @@
 #include "ltmd/lobe_parameters.h"
 
 #include "bindings.h"
+#include "distributions.h"
 #include "ltmd/passes.h"
 
 namespace ltmd::python {
 namespace {
-
-Array<double> matrix(const Matrix2& m) {
-    Array<double> out({py::ssize_t{2}, py::ssize_t{2}});
-    const double values[4] = {m.xx, m.xy, m.yx, m.yy};
-    std::copy_n(values, 4, out.mutable_data());
-    return out;
-}
 
 /// An array of a function of each tension, [..., k] as `k` items.
 template <class Item, class Function>
@@ -60,14 +54,14 @@ Lobe parse_lobe(py::handle alpha, py::handle m0, double strength, double height_
 void bind_lobe_parameters(py::module_& module) {
     using namespace py::literals;
     module.def(
-        "stretch_matrix", [](double s) { return matrix(stretch_matrix(s)); }, "s"_a,
+        "stretch_matrix", [](double s) { return matrix_array(stretch_matrix(s)); }, "s"_a,
         R"(The stretch anisotropy float64[2, 2]: diag(1/(1-s), 1-s), or diag(1+s, 1/(1+s)) for s < 0; -1 < s < 1.
 
 Source: microsurface-transformations, eq. 31.)");
     module.def(
         "material_matrix",
         [](double stretch, double rotation, double shear) {
-            return matrix(material_matrix(stretch, rotation, shear));
+            return matrix_array(material_matrix(stretch, rotation, shear));
         },
         "stretch"_a, "rotation"_a, "shear"_a,
         R"(A material's anisotropy M0 = Rot(rotation) [[1, shear], [0, 1]] stretch_matrix(stretch), float64[2, 2].

@@ -55,5 +55,7 @@ void bind_exr(py::module_& module);
 void bind_sequence_baker(py::module_& module);
 void bind_verify(py::module_& module);
 void bind_threads(py::module_& module);
+void bind_any_distribution(py::module_& module);
+void bind_ggx(py::module_& module);
 
 }  // namespace ltmd::python

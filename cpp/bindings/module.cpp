@@ -22,6 +22,8 @@ PYBIND11_MODULE(_ltmd, module) {
     bind_tension(module);
     bind_deformation_tensor(module);
     bind_lobe_parameters(module);
+    bind_any_distribution(module);
+    bind_ggx(module);
     bind_texel_coverage(module);
     bind_exr(module);
     bind_sequence_baker(module);

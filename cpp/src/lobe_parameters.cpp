@@ -6,36 +6,15 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <sstream>
-#include <string>
 
 #include "ltmd/errors.h"
 #include "parallel.h"
+#include "text.h"
 
 namespace ltmd::inline v0 {
 namespace {
 
 constexpr std::size_t grain = 1 << 12;
-constexpr double largest_condition = 1e6;
-
-Matrix2 operator*(const Matrix2& a, const Matrix2& b) {
-    return {a.xx * b.xx + a.xy * b.yx, a.xx * b.xy + a.xy * b.yy, a.yx * b.xx + a.yy * b.yx,
-            a.yx * b.xy + a.yy * b.yy};
-}
-
-Matrix2 rotation_matrix(double angle) {
-    const double c = std::cos(angle), s = std::sin(angle);
-    return {c, -s, s, c};
-}
-
-double determinant(const Matrix2& m) { return m.xx * m.yy - m.xy * m.yx; }
-
-std::string text(const auto&... parts) {
-    std::ostringstream stream;
-    stream.imbue(std::locale::classic());
-    (stream << ... << parts);
-    return stream.str();
-}
 
 /// T_s = V^s Rot(s phi) with the polar decomposition T = V Rot(phi).
 Matrix2 strengthened(const Tension& t, double strength) {
@@ -111,31 +90,11 @@ void check(std::span<const Tension> t, const Lobe& lobe, std::span<Item> out) {
 
 }  // namespace
 
-Matrix2 stretch_matrix(double s) {
-    if (!(s > -1 && s < 1))
-        throw InvalidInput(text("stretch is ", s, "; it must be between -1 and 1"));
-    const double along = s < 0 ? 1 + s : 1 / (1 - s);
-    return {along, 0, 0, 1 / along};
-}
-
-Matrix2 material_matrix(double stretch, double rotation, double shear) {
-    if (!std::isfinite(rotation) || !std::isfinite(shear))
-        throw InvalidInput(
-            text("rotation is ", rotation, ", shear ", shear, "; both must be finite"));
-    return rotation_matrix(rotation) * (Matrix2{1, shear, 0, 1} * stretch_matrix(stretch));
-}
-
 void validate(const Lobe& lobe) {
     if (!(lobe.alpha_x > 0 && lobe.alpha_y > 0 && std::isfinite(lobe.alpha_x + lobe.alpha_y)))
         throw InvalidInput(
             text("alpha is (", lobe.alpha_x, ", ", lobe.alpha_y, "); both must be above 0"));
-    const Matrix2& m = lobe.m0;
-    const double size2 = m.xx * m.xx + m.xy * m.xy + m.yx * m.yx + m.yy * m.yy;
-    const double det = std::abs(determinant(m));
-    // |m|^2 / |det m| is within a factor of 2 of the condition number.
-    if (!(std::isfinite(size2) && det > 0 && size2 / det <= largest_condition))
-        throw InvalidInput(text("M0 is ((", m.xx, ", ", m.xy, "), (", m.yx, ", ", m.yy,
-                                ")); it must be invertible"));
+    require_invertible(lobe.m0, "M0");
     if (!(lobe.strength >= 0 && std::isfinite(lobe.strength)))
         throw InvalidInput(text("strength is ", lobe.strength, "; it must be 0 or more"));
     if (!std::isfinite(lobe.height_response))

@@ -12,15 +12,19 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 
 # In each branch a header may include those before it. Private headers of cpp/src have their place
 # among the public ones.
-BASE = ["export", "version", "errors", "threads", "parallel", "utf8_path"]
+BASE = ["export", "version", "errors", "threads", "parallel", "text", "utf8_path"]
 GEOMETRY = [
     "mesh_view", "vector_math", "tangent_frame", "rest_state", "rest_state_data", "tension",
     "deformation_tensor", "texel_coverage", "bake",
 ]  # fmt: skip
 DISTRIBUTION = [
-    "slope_distribution", "ggx", "beckmann", "gtr", "std_distribution", "phong", "sheen",
-    "discrete_ggx", "ellipsoid_ndf", "masking", "transformed_distribution", "visible_normals",
-    "lobe_mixture", "mdf_conversion", "major_axis", "line_integral", "environment",
+    "require_range", "matrix2", "direction", "slope_distribution", "transformed_distribution",
+    "any_distribution", "special_functions", "visible_normals", "lobe_mixture", "ggx", "beckmann",
+    "beckmann_mixture", "tabulated", "gtr", "std_distribution", "phong", "sheen", "discrete_ggx",
+    "ashikhmin_shirley", "gauss", "schlick_mdf", "sawicki_ds", "ellipsoid_ndf",
+    "non_centred_distribution", "fresnel", "masking", "v_cavity", "microfacet_brdf",
+    "diffuse_microfacets", "multiple_scattering", "heightfield", "mdf_conversion", "major_axis",
+    "line_integral", "environment",
 ]  # fmt: skip
 JOIN = ["lobe_parameters"]
 FILES = ["exr", "passes", "sequence_baker", "verify"]

@@ -5,6 +5,7 @@
 #include <span>
 
 #include "ltmd/export.h"
+#include "ltmd/matrix2.h"
 #include "ltmd/mesh_view.h"
 #include "ltmd/tension.h"
 
@@ -17,19 +18,6 @@
 /// scale of heights (microsurface-transformations, eq. 9, 29-31 and section 4.1). Results are in
 /// the frame of the deformed surface, x along dP'/du; what exceeds the range of float saturates.
 namespace ltmd::inline v0 {
-
-/// Row-major [[xx, xy], [yx, yy]].
-struct Matrix2 {
-    double xx = 1, xy = 0, yx = 0, yy = 1;
-};
-
-/// The stretch anisotropy M_s = diag(1/(1-s), 1-s), or diag(1+s, 1/(1+s)) for s < 0
-/// (microsurface-transformations, eq. 31). Throws InvalidInput unless -1 < s < 1.
-LTMD_API Matrix2 stretch_matrix(double s);
-
-/// The material's anisotropy M0 = Rot(rotation) [[1, shear], [0, 1]] M_stretch, rotation in radians
-/// counter-clockwise from U. Throws InvalidInput unless -1 < stretch < 1 and all are finite.
-LTMD_API Matrix2 material_matrix(double stretch, double rotation, double shear);
 
 /// A lobe at rest and how it follows tension.
 struct Lobe {

@@ -6,7 +6,9 @@ up; tensions are (t11, t12, t22) of T = [[t11, t12], [0, t22]]; (1, 0, 1) is the
 """
 
 from ltmd._ltmd import (
+    GGX,
     Cancelled,
+    Distribution,
     FileError,
     InvalidInput,
     Mesh,
@@ -14,6 +16,7 @@ from ltmd._ltmd import (
     RestState,
     SequenceBaker,
     TexelCoverage,
+    TransformedDistribution,
     VerifyReport,
     __version__,
     alpha2,
@@ -40,7 +43,9 @@ from ltmd._ltmd import (
 )
 
 __all__ = [
+    "GGX",
     "Cancelled",
+    "Distribution",
     "FileError",
     "InvalidInput",
     "Mesh",
@@ -48,6 +53,7 @@ __all__ = [
     "RestState",
     "SequenceBaker",
     "TexelCoverage",
+    "TransformedDistribution",
     "VerifyReport",
     "__version__",
     "alpha2",

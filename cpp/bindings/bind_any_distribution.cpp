@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "ltmd/any_distribution.h"
+
+#include "bindings.h"
+#include "distributions.h"
+
+namespace ltmd::python {
+namespace {
+
+/// A distribution under M, in Python.
+struct Transformed : Distribution {
+    py::object base;
+    Matrix2 matrix;
+};
+
+template <class Real>
+using Direction = ltmd::Direction<Real>;
+
+/// A method of AnyDistribution that takes one array.
+template <template <class> class In, bool direction_out, class Call>
+py::object unary(const Distribution& d, py::handle object, const char* name, const Call& call) {
+    const py::array array = floating(object, name);
+    return by_dtype(array, [&](auto real) -> py::object {
+        using Real = decltype(real);
+        using Out = std::conditional_t<direction_out, Direction<Real>, Real>;
+        const auto size = static_cast<py::ssize_t>(sizeof(In<Real>) / sizeof(Real));
+        return for_each_item<In<Real>, Out>(
+            require<Real>(array, name, {size}, true),
+            [&](auto from, auto to) { call(d.of(real), from, to); });
+    });
+}
+
+/// A method of AnyDistribution that takes a view and another array.
+template <template <class> class Other, bool direction_out, class Call>
+py::object binary(const Distribution& d, py::handle v, py::handle other, const char* name,
+                  const Call& call) {
+    constexpr auto size = static_cast<py::ssize_t>(sizeof(Other<float>) / sizeof(float));
+    const auto [views, others] = broadcast(v, "v", 3, other, name, size);
+    return by_dtype(views, [&, &a = views, &b = others](auto real) -> py::object {
+        using Real = decltype(real);
+        using Out = std::conditional_t<direction_out, Direction<Real>, Real>;
+        const auto given = require<Real>(a, "v", {3}, true);
+        const auto second = require<Real>(b, name, {size}, true);
+        const auto second_items = items<Other<Real>>(second);
+        return for_each_item<Direction<Real>, Out>(
+            given, [&](auto from, auto to) { call(d.of(real), from, second_items, to); });
+    });
+}
+
+}  // namespace
+
+py::array floating(py::handle object, const char* name) {
+    if (py::isinstance<py::array>(object)) {
+        if (py::isinstance<py::array_t<float>>(object) ||
+            py::isinstance<py::array_t<double>>(object))
+            return py::reinterpret_borrow<py::array>(object);
+        throw py::type_error(
+            std::string(name) + " must be of float32 or float64, not " +
+            std::string(py::str(py::reinterpret_borrow<py::array>(object).dtype())));
+    }
+    auto array = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(object);
+    if (!array) {
+        PyErr_Clear();
+        throw py::type_error(std::string(name) + " must be an array of float32 or float64, not " +
+                             std::string(py::str(py::type::of(object).attr("__name__"))));
+    }
+    return array;
+}
+
+std::pair<py::array, py::array> broadcast(py::handle a, const char* name_a, py::ssize_t size_a,
+                                          py::handle b, const char* name_b, py::ssize_t size_b) {
+    py::array first = floating(a, name_a), second = floating(b, name_b);
+    // What is not an array takes the other's type.
+    const bool free_a = !py::isinstance<py::array>(a), free_b = !py::isinstance<py::array>(b);
+    if (free_a && !free_b) first = first.attr("astype")(second.dtype());
+    if (free_b && !free_a) second = second.attr("astype")(first.dtype());
+    if (!first.dtype().is(second.dtype()) && !first.dtype().equal(second.dtype()))
+        throw py::type_error(std::string(name_a) + " is of " + std::string(py::str(first.dtype())) +
+                             " and " + name_b + " of " + std::string(py::str(second.dtype())) +
+                             "; both must be of one type");
+    const auto check = [](const py::array& array, const char* name, py::ssize_t size) {
+        if (array.ndim() < 1 || array.shape(array.ndim() - 1) != size)
+            throw py::value_error(std::string(name) + " must have shape (..., " +
+                                  std::to_string(size) + "), not " + shape_text(array));
+    };
+    check(first, name_a, size_a);
+    check(second, name_b, size_b);
+    const auto leading = [](const py::array& array) {
+        py::tuple shape(array.ndim() - 1);
+        for (py::ssize_t i = 0; i + 1 < array.ndim(); ++i)
+            shape[static_cast<std::size_t>(i)] = array.shape(i);
+        return shape;
+    };
+    const py::tuple lead_a = leading(first), lead_b = leading(second);
+    if (lead_a.equal(lead_b)) return {first, second};
+    const auto numpy = py::module_::import("numpy");
+    py::tuple shape;
+    try {
+        shape = numpy.attr("broadcast_shapes")(lead_a, lead_b);
+    } catch (py::error_already_set&) {
+        throw py::value_error(std::string(name_a) + " has shape " + shape_text(first) + " and " +
+                              name_b + " " + shape_text(second) +
+                              "; their leading axes do not fit together");
+    }
+    const auto spread = [&](const py::array& array, py::ssize_t size) -> py::array {
+        return numpy.attr("ascontiguousarray")(
+            numpy.attr("broadcast_to")(array, shape + py::make_tuple(size)));
+    };
+    return {spread(first, size_a), spread(second, size_b)};
+}
+
+Matrix2 parse_surface_matrix(py::handle m) {
+    const auto values = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(m);
+    if (!values) {
+        PyErr_Clear();
+        throw py::type_error("M must be a 2x2 matrix of numbers");
+    }
+    if (values.ndim() == 2 && values.shape(0) == 2 && values.shape(1) == 2) {
+        const double* v = values.data();
+        return {v[0], v[1], v[2], v[3]};
+    }
+    if (values.ndim() == 2 && values.shape(0) == 3 && values.shape(1) == 3) {
+        std::array<double, 9> all;
+        std::copy_n(values.data(), 9, all.begin());
+        return tangent_plane_part(all);
+    }
+    throw py::value_error("M must have shape (2, 2) or (3, 3), not " + shape_text(values));
+}
+
+Array<double> matrix_array(const Matrix2& m) {
+    Array<double> out({py::ssize_t{2}, py::ssize_t{2}});
+    const double values[4] = {m.xx, m.xy, m.yx, m.yy};
+    std::copy_n(values, 4, out.mutable_data());
+    return out;
+}
+
+void bind_any_distribution(py::module_& module) {
+    using namespace py::literals;
+    py::class_<Distribution>(module, "Distribution",
+                             R"(A microfacet distribution; GGX and others derive from it.
+
+Directions are unit vectors (x, y, z) in the tangent frame, z the macrosurface normal. Arrays are float32 or float64, results
+have the same type; anything else with numbers counts as float64. Leading axes are kept, and broadcast where there are two
+arrays.)")
+        .def(
+            "P22",
+            [](const Distribution& self, py::handle slopes) {
+                return unary<Slope, false>(self, slopes, "slopes",
+                                           [](auto& d, auto s, auto to) { d.P22(s, to); });
+            },
+            "slopes"_a,
+            R"(The density of slopes (-m_x/m_z, -m_y/m_z): float[..., 2] -> float[...]; integrates to 1.
+
+Source: microsurface-transformations, eq. 4.)")
+        .def(
+            "D",
+            [](const Distribution& self, py::handle m) {
+                return unary<Direction, false>(self, m, "m",
+                                               [](auto& d, auto s, auto to) { d.D(s, to); });
+            },
+            "m"_a,
+            R"(The density of normals, D = P22 / cos^4: float[..., 3] -> float[...], per steradian; 0 for m_z <= 0.
+
+D cos integrates to 1. Source: microsurface-transformations, eq. 3, 4.)")
+        .def(
+            "Lambda",
+            [](const Distribution& self, py::handle v) {
+                return unary<Direction, false>(self, v, "v",
+                                               [](auto& d, auto s, auto to) { d.Lambda(s, to); });
+            },
+            "v"_a,
+            R"(Smith's auxiliary function, 0 or more, for v_z > 0: float[..., 3] -> float[...].
+
+Source: masking-shadowing, eq. 65.)")
+        .def(
+            "G1",
+            [](const Distribution& self, py::handle v) {
+                return unary<Direction, false>(self, v, "v",
+                                               [](auto& d, auto s, auto to) { d.G1(s, to); });
+            },
+            "v"_a,
+            R"(The masking 1 / (1 + Lambda) of microfacets that face v, in [0, 1]; 0 for v_z <= 0: float[..., 3] -> float[...].)")
+        .def(
+            "projected_area",
+            [](const Distribution& self, py::handle v) {
+                return unary<Direction, false>(
+                    self, v, "v", [](auto& d, auto s, auto to) { d.projected_area(s, to); });
+            },
+            "v"_a,
+            R"(The integral of D(m) max(0, v.m), the area of the microfacets that face v, projected along v: float[..., 3] -> float[...].)")
+        .def(
+            "sample",
+            [](const Distribution& self, py::handle u) {
+                return unary<Uniform, true>(self, u, "u",
+                                            [](auto& d, auto s, auto to) { d.sample(s, to); });
+            },
+            "u"_a,
+            R"(Normals with density D cos, from random numbers in [0, 1]: float[..., 2] -> float[..., 3].
+
+Source: microsurface-transformations, eq. 25, 26.)")
+        .def(
+            "pdf",
+            [](const Distribution& self, py::handle m) {
+                return unary<Direction, false>(self, m, "m",
+                                               [](auto& d, auto s, auto to) { d.pdf(s, to); });
+            },
+            "m"_a, "The density of sample(), D cos, per steradian: float[..., 3] -> float[...].")
+        .def(
+            "sample_visible",
+            [](const Distribution& self, py::handle v, py::handle u) {
+                return binary<Uniform, true>(self, v, u, "u", [](auto& d, auto a, auto b, auto to) {
+                    d.sample_visible(a, b, to);
+                });
+            },
+            "v"_a, "u"_a,
+            R"(Normals as seen from v (v_z > 0), from random numbers in [0, 1]: float[..., 3], float[..., 2] -> float[..., 3].
+
+Source: microsurface-transformations, eq. 27, 28.)")
+        .def(
+            "pdf_visible",
+            [](const Distribution& self, py::handle v, py::handle m) {
+                return binary<Direction, false>(
+                    self, v, m, "m",
+                    [](auto& d, auto a, auto b, auto to) { d.pdf_visible(a, b, to); });
+            },
+            "v"_a, "m"_a,
+            R"(The density of sample_visible(), D max(0, v.m) / projected_area(v), per steradian: float[..., 3], float[..., 3] -> float[...].)")
+        .def(
+            "transformed",
+            [](py::object self, py::handle m) {
+                const auto& d = self.cast<const Distribution&>();
+                const Matrix2 matrix = parse_surface_matrix(m);
+                return Transformed{
+                    {d.single.transformed(matrix), d.full.transformed(matrix)}, self, matrix};
+            },
+            "M"_a,
+            R"(This distribution after the map p' = M p of its surface, M of shape (2, 2), heights kept.
+
+Raises ValueError for a singular M, or a (3, 3) M that leaves the tangent plane.
+Source: microsurface-transformations, eq. 9, 12, 22, 24-28.)");
+    py::class_<Transformed, Distribution>(module, "TransformedDistribution",
+                                          "A distribution under a linear map of its surface.")
+        .def_readonly("base", &Transformed::base)
+        .def_property_readonly("M", [](const Transformed& t) { return matrix_array(t.matrix); })
+        .def("__repr__", [](const Transformed& t) {
+            return std::string(py::repr(t.base)) + ".transformed(" +
+                   std::string(py::str(matrix_array(t.matrix).attr("tolist")())) + ")";
+        });
+}
+
+}  // namespace ltmd::python

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <utility>
+
+#include "arrays.h"
+#include "ltmd/any_distribution.h"
+
+/// Distributions in Python: arrays of float32 and float64 each have their own copy.
+namespace ltmd::python {
+
+/// What every distribution's class in Python derives from.
+struct Distribution {
+    AnyDistribution<float> single;
+    AnyDistribution<double> full;
+
+    const AnyDistribution<float>& of(float) const { return single; }
+    const AnyDistribution<double>& of(double) const { return full; }
+};
+
+/// A distribution D<Real> with its parameters at hand; to bind with Distribution as its base:
+/// py::class_<Bound<GGX>, Distribution>(module, "GGX").def(py::init<double, double>(), …).
+template <template <class> class D>
+struct Bound : Distribution {
+    template <class... Arguments>
+    explicit Bound(const Arguments&... arguments)
+        : Bound(D<float>(arguments...), D<double>(arguments...)) {}
+
+    D<float> exact_single;
+    D<double> exact;
+
+    const D<float>& exact_of(float) const { return exact_single; }
+    const D<double>& exact_of(double) const { return exact; }
+
+private:
+    Bound(D<float> f, D<double> d)
+        : Distribution{AnyDistribution<float>(f), AnyDistribution<double>(d)},
+          exact_single(std::move(f)),
+          exact(std::move(d)) {}
+};
+
+/// `object` as an array of float32 or float64, anything but an array as float64. Throws TypeError
+/// for an array of another type or what is not numbers.
+py::array floating(py::handle object, const char* name);
+
+/// `from`, of shape (…, n) with n = sizeof(In) / sizeof(Real), through function(span<const In>,
+/// span<Out>): the leading axes, followed by those of Out if it is more than one number.
+template <class In, class Out, class Real, class Function>
+Array<Real> for_each_item(const Array<Real>& from, const Function& function) {
+    std::vector<py::ssize_t> shape(from.shape(), from.shape() + from.ndim() - 1);
+    if constexpr (sizeof(Out) > sizeof(Real))
+        shape.push_back(static_cast<py::ssize_t>(sizeof(Out) / sizeof(Real)));
+    Array<Real> out(shape);
+    const auto given = items<In>(from);
+    const auto result = mutable_items<Out>(out);
+    py::gil_scoped_release release;
+    function(given, result);
+    return out;
+}
+
+/// Two arrays of one dtype with their leading axes broadcast to one shape. Throws TypeError for two
+/// dtypes, ValueError for shapes that do not fit.
+std::pair<py::array, py::array> broadcast(py::handle a, const char* name_a, py::ssize_t size_a,
+                                          py::handle b, const char* name_b, py::ssize_t size_b);
+
+/// function<Real>() with Real = float or double by the array's dtype.
+template <class Function>
+auto by_dtype(const py::array& array, const Function& function) {
+    return py::isinstance<py::array_t<float>>(array) ? function(float{}) : function(double{});
+}
+
+/// M of shape (2, 2), or (3, 3) with (0, 0, 1) as third row and column.
+Matrix2 parse_surface_matrix(py::handle m);
+/// float64[2, 2].
+Array<double> matrix_array(const Matrix2& m);
+
+}  // namespace ltmd::python

@@ -1,0 +1,11 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Every distribution that the tests for all of them run on: name -> (distribution, slope scale)."""
+
+import ltmd
+
+DISTRIBUTIONS = {
+    "GGX(0.01)": (ltmd.GGX(0.01), 0.01),
+    "GGX(0.3)": (ltmd.GGX(0.3), 0.3),
+    "GGX(1)": (ltmd.GGX(1.0), 1.0),
+    "GGX(0.5, 0.1)": (ltmd.GGX(0.5, 0.1), 0.2),
+}
