@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <limits>
 #include <set>
 #include <string>
 
@@ -16,6 +17,8 @@ namespace {
 
 constexpr std::size_t grain = 1 << 16;
 constexpr float max_tile = 1000;
+// The corners of all triangles are counted in 32 bits.
+constexpr std::size_t max_triangles = std::numeric_limits<std::int32_t>::max() / 3;
 
 /// The first index in [0, count) for which bad(index) holds, or count.
 template <class Predicate>
@@ -70,6 +73,9 @@ void validate(const MeshView& mesh) {
     if (mesh.vertex_count < 0)
         throw InvalidInput("vertex_count is " + std::to_string(mesh.vertex_count) +
                            "; it must be 0 or more");
+    if (mesh.triangles.size() > max_triangles)
+        throw InvalidInput("the mesh has " + std::to_string(mesh.triangles.size()) +
+                           " triangles; at most " + std::to_string(max_triangles) + " are allowed");
     const auto corners = static_cast<std::int64_t>(mesh.corner_vert.size());
     if (!mesh.corner_uv.empty() && mesh.corner_uv.size() != mesh.corner_vert.size())
         throw InvalidInput("corner_uv has " + std::to_string(mesh.corner_uv.size()) +

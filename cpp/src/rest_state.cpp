@@ -4,12 +4,9 @@
 
 #include <algorithm>
 #include <bit>
-#include <limits>
 #include <numeric>
-#include <string>
 #include <tuple>
 
-#include "ltmd/errors.h"
 #include "ltmd/tangent_frame.h"
 #include "parallel.h"
 #include "rest_state_data.h"
@@ -79,33 +76,21 @@ void prepare_triangles(const MeshView& mesh, std::span<const Vec3f> positions,
         data.weight[i] = largest > 0 ? static_cast<float>(area[i] / largest) : 0.0f;
 }
 
-TriangleLists triangles_of_vertices(const RestState::Data& data) {
-    TriangleLists lists;
-    lists.offsets.assign(data.vertex_count + 1, 0);
+void list_triangles_of_vertices(RestState::Data& data) {
+    std::vector<std::int32_t>& offsets = data.vertex_triangles.offsets;
+    offsets.assign(data.vertex_count + 1, 0);
     for (const auto& vertex : data.vertices)
-        for (std::int32_t v : vertex) ++lists.offsets[v + 1];
-    std::inclusive_scan(lists.offsets.begin(), lists.offsets.end(), lists.offsets.begin());
-    lists.triangles.resize(lists.offsets.back());
-    std::vector<std::int32_t> next(lists.offsets.begin(), lists.offsets.end() - 1);
+        for (std::int32_t v : vertex) ++offsets[v + 1];
+    std::inclusive_scan(offsets.begin(), offsets.end(), offsets.begin());
+    data.listed.resize(offsets.back());
+    data.vertex_triangles.triangles = data.listed;
+    std::vector<std::int32_t> next(offsets.begin(), offsets.end() - 1);
     for (std::size_t i = 0; i < data.vertices.size(); ++i)
         for (std::int32_t v : data.vertices[i])
-            lists.triangles[next[v]++] = static_cast<std::int32_t>(i);
-    return lists;
+            data.listed[next[v]++] = static_cast<std::int32_t>(i);
 }
 
-/// Finds the fans: at each vertex, triangles that share an edge, the vertex's UV and the sign of
-/// the UV area are joined.
-void prepare_fans(const MeshView& mesh, RestState::Data& data) {
-    const TriangleLists& incident = data.vertex_triangles;
-    const auto corner_at = [&](std::int32_t triangle, std::int32_t vertex) {
-        int k = 0;
-        while (data.vertices[triangle][k] != vertex) ++k;
-        return mesh.triangles[triangle][k];
-    };
-
-    // Number the fans of each vertex 0, 1, ... in the order of their lowest triangle.
-    std::vector<std::int32_t> local_fan(incident.triangles.size());
-    std::vector<std::int32_t> first_fan(data.vertex_count + 1, 0);
+std::vector<signed char> uv_signs(const MeshView& mesh) {
     std::vector<signed char> signs(mesh.triangles.size());
     parallel_for(mesh.triangles.size(), grain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
@@ -114,15 +99,33 @@ void prepare_fans(const MeshView& mesh, RestState::Data& data) {
                 uv_area_sign(mesh.corner_uv[t[0]], mesh.corner_uv[t[1]], mesh.corner_uv[t[2]]));
         }
     });
+    return signs;
+}
+
+/// Finds the fans: at each vertex, triangles that share an edge, the vertex's UV and the sign of
+/// the UV area are joined. Orders each vertex's triangles by fan.
+void prepare_fans(const MeshView& mesh, const std::vector<signed char>& signs,
+                  RestState::Data& data) {
+    const auto corner_at = [&](std::int32_t triangle, std::int32_t vertex) {
+        int k = 0;
+        while (data.vertices[triangle][k] != vertex) ++k;
+        return mesh.triangles[triangle][k];
+    };
+
+    // Number the fans of each vertex 0, 1, ... in the order of their lowest triangle. In the
+    // vertex's list the first triangle of each fan is marked by its complement.
+    std::vector<std::int32_t> first_fan(data.vertex_count + 1, 0);
+    data.corner_fan.assign(data.corner_count, -1);
     parallel_for(data.vertex_count, grain, [&](std::size_t begin, std::size_t end) {
         std::vector<Incidence> edges;
-        std::vector<std::int32_t> root;
+        std::vector<std::int32_t> root, triangles, fan_of, fan_sign, next;
         const auto find = [&](std::int32_t i) {
             while (root[i] != i) i = root[i] = root[root[i]];
             return i;
         };
         for (std::size_t vertex = begin; vertex < end; ++vertex) {
-            const auto triangles = incident[vertex];
+            const auto list = data.vertex_triangles[vertex];
+            triangles.assign(list.begin(), list.end());
             edges.clear();
             root.resize(triangles.size());
             std::iota(root.begin(), root.end(), 0);
@@ -144,45 +147,50 @@ void prepare_fans(const MeshView& mesh, RestState::Data& data) {
                 const std::int32_t a = find(edges[i - 1].entry), b = find(edges[i].entry);
                 root[std::max(a, b)] = std::min(a, b);
             }
-            std::int32_t fans = 0;
-            std::int32_t* local = &local_fan[incident.offsets[vertex]];
+            fan_of.resize(triangles.size());
+            fan_sign.clear();
+            next.clear();
             for (std::size_t entry = 0; entry < triangles.size(); ++entry) {
                 const std::int32_t lowest = find(static_cast<std::int32_t>(entry));
-                local[entry] = lowest == static_cast<std::int32_t>(entry) ? fans++ : local[lowest];
+                if (lowest == static_cast<std::int32_t>(entry)) {
+                    fan_of[entry] = static_cast<std::int32_t>(fan_sign.size());
+                    fan_sign.push_back(signs[triangles[entry]]);
+                    next.push_back(0);
+                } else {
+                    fan_of[entry] = fan_of[lowest];
+                }
+                ++next[fan_of[entry]];
+                // A face whose triangles fall into several fans takes the first that has UV area.
+                std::int32_t& fan =
+                    data.corner_fan[corner_at(triangles[entry], static_cast<std::int32_t>(vertex))];
+                const bool better = fan >= 0 && fan_sign[fan] == 0 && signs[triangles[entry]] != 0;
+                if (fan < 0 || better) fan = fan_of[entry];
             }
-            first_fan[vertex + 1] = fans;
+            first_fan[vertex + 1] = static_cast<std::int32_t>(fan_sign.size());
+            std::exclusive_scan(next.begin(), next.end(), next.begin(),
+                                data.vertex_triangles.offsets[vertex]);
+            for (std::size_t entry = 0; entry < triangles.size(); ++entry) {
+                const bool is_lowest = root[entry] == static_cast<std::int32_t>(entry);
+                data.listed[next[fan_of[entry]]++] =
+                    is_lowest ? ~triangles[entry] : triangles[entry];
+            }
         }
     });
     data.report.seam_vertices = std::count_if(first_fan.begin(), first_fan.end(),
                                               [](std::int32_t fans) { return fans > 1; });
     std::inclusive_scan(first_fan.begin(), first_fan.end(), first_fan.begin());
 
-    // List the triangles of each fan, and the fan of each corner.
-    data.fans.offsets.assign(first_fan.back() + 1, 0);
-    data.fans.triangles.resize(incident.triangles.size());
-    data.corner_fan.assign(data.corner_count, -1);
-    std::vector<std::int32_t> counts;
-    for (std::size_t vertex = 0; vertex < data.vertex_count; ++vertex) {
-        const auto triangles = incident[vertex];
-        const std::int32_t* local = &local_fan[incident.offsets[vertex]];
-        counts.assign(first_fan[vertex + 1] - first_fan[vertex] + 1, 0);
-        for (std::size_t entry = 0; entry < triangles.size(); ++entry) ++counts[local[entry] + 1];
-        std::inclusive_scan(counts.begin(), counts.end(), counts.begin());
-        for (std::int32_t fan = first_fan[vertex]; fan < first_fan[vertex + 1]; ++fan)
-            data.fans.offsets[fan + 1] =
-                incident.offsets[vertex] + counts[fan - first_fan[vertex] + 1];
-        for (std::size_t entry = 0; entry < triangles.size(); ++entry) {
-            const std::int32_t triangle = triangles[entry];
-            data.fans.triangles[incident.offsets[vertex] + counts[local[entry]]++] = triangle;
-            // A face whose triangles fall into several fans takes the first that has UV area.
-            const std::int32_t corner = corner_at(triangle, static_cast<std::int32_t>(vertex));
-            std::int32_t& fan = data.corner_fan[corner];
-            const bool better = fan >= 0 &&
-                                signs[data.fans.triangles[data.fans.offsets[fan]]] == 0 &&
-                                signs[triangle] != 0;
-            if (fan < 0 || better) fan = first_fan[vertex] + local[entry];
-        }
+    data.fans.offsets.reserve(static_cast<std::size_t>(first_fan.back()) + 1);
+    for (std::size_t i = 0; i < data.listed.size(); ++i) {
+        if (data.listed[i] >= 0) continue;
+        data.listed[i] = ~data.listed[i];
+        data.fans.offsets.push_back(static_cast<std::int32_t>(i));
     }
+    data.fans.offsets.push_back(static_cast<std::int32_t>(data.listed.size()));
+    data.fans.triangles = data.listed;
+    for (std::size_t corner = 0; corner < data.corner_count; ++corner)
+        if (data.corner_fan[corner] >= 0)
+            data.corner_fan[corner] += first_fan[mesh.corner_vert[corner]];
 }
 
 }  // namespace
@@ -191,16 +199,12 @@ RestState::RestState(const MeshView& mesh, std::span<const Vec3f> positions)
     : data_(std::make_unique<Data>()) {
     validate(mesh);
     validate_positions(mesh, positions, "rest");
-    if (mesh.triangles.size() > std::numeric_limits<std::int32_t>::max() / 3)
-        throw InvalidInput(
-            "the mesh has " + std::to_string(mesh.triangles.size()) + " triangles; at most " +
-            std::to_string(std::numeric_limits<std::int32_t>::max() / 3) + " are allowed");
     Data& data = *data_;
     data.corner_count = mesh.corner_vert.size();
     data.vertex_count = mesh.vertex_count;
     data.has_uv = mesh.has_uv();
     prepare_triangles(mesh, positions, data);
-    data.vertex_triangles = triangles_of_vertices(data);
+    list_triangles_of_vertices(data);
     for (std::size_t i = 0; i < data.state.size(); ++i) {
         const TriangleState state = data.state[i];
         if (state != TriangleState::regular) data.irregular.push_back(static_cast<std::int32_t>(i));
@@ -208,10 +212,9 @@ RestState::RestState(const MeshView& mesh, std::span<const Vec3f> positions)
         data.report.no_uv_triangles += data.has_uv && state == TriangleState::no_uv;
     }
     if (!data.has_uv) return;
-    for (const Triangle& t : mesh.triangles)
-        data.report.mirrored_triangles +=
-            uv_area_sign(mesh.corner_uv[t[0]], mesh.corner_uv[t[1]], mesh.corner_uv[t[2]]) < 0;
-    prepare_fans(mesh, data);
+    const std::vector<signed char> signs = uv_signs(mesh);
+    data.report.mirrored_triangles = std::count(signs.begin(), signs.end(), -1);
+    prepare_fans(mesh, signs, data);
 }
 
 RestState::~RestState() = default;

@@ -19,11 +19,11 @@ enum class TriangleState : std::uint8_t {
 /// Lists of triangles, one list per item: item i has triangles[offsets[i] .. offsets[i + 1]).
 struct TriangleLists {
     std::vector<std::int32_t> offsets;
-    std::vector<std::int32_t> triangles;
+    std::span<const std::int32_t> triangles;
 
     std::size_t size() const { return offsets.size() - 1; }
     std::span<const std::int32_t> operator[](std::size_t i) const {
-        return std::span(triangles).subspan(offsets[i], offsets[i + 1] - offsets[i]);
+        return triangles.subspan(offsets[i], offsets[i + 1] - offsets[i]);
     }
 };
 
@@ -41,8 +41,9 @@ struct RestState::Data {
     std::vector<std::int32_t>
         irregular;  ///< Triangles that are not TriangleState::regular, sorted.
 
-    TriangleLists vertex_triangles;        ///< All triangles of each vertex.
-    TriangleLists fans;                    ///< The triangles of each UV fan.
+    std::vector<std::int32_t> listed;      ///< The triangles of each vertex, fan by fan.
+    TriangleLists vertex_triangles;        ///< All triangles of each vertex: in `listed`.
+    TriangleLists fans;                    ///< The triangles of each UV fan: in `listed` too.
     std::vector<std::int32_t> corner_fan;  ///< [C], -1 for a corner of no triangle.
 };
 

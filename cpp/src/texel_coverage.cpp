@@ -7,6 +7,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -66,79 +67,150 @@ struct Span {
     std::uint16_t begin, end;
 };
 
-/// Lists of spans per row of blocks, in the order of addition. Per row, not per block: a mesh whose
+/// Lists of spans per row of blocks, in the order of items. Per row, not per block: a mesh whose
 /// every face fills the tile would need as many entries as it has triangles times blocks.
 class Bins {
 public:
     explicit Bins(int row_count) : starts_(static_cast<std::size_t>(row_count) + 1) {}
 
-    void add(int row, std::int32_t item, const IntRange& columns) {
-        if (columns.begin >= columns.end) return;
-        entries_.push_back({{item, static_cast<std::uint16_t>(columns.begin),
-                             static_cast<std::uint16_t>(columns.end)},
-                            row});
-        ++starts_[static_cast<std::size_t>(row) + 1];
-    }
-    void build() {
-        for (std::size_t b = 1; b < starts_.size(); ++b) starts_[b] += starts_[b - 1];
-        spans_.resize(entries_.size());
-        std::vector<std::size_t> next(starts_.begin(), starts_.end() - 1);
-        for (const Entry& entry : entries_)
-            spans_[next[static_cast<std::size_t>(entry.row)]++] = entry.span;
-        entries_ = {};
+    /// spans(item, add) calls add(row, columns) for each row that the item reaches.
+    template <class Spans>
+    void build(std::size_t count, const Spans& spans) {
+        // Counted first and placed then, by pieces of items: nothing but the result is held.
+        const std::size_t rows = starts_.size() - 1;
+        std::vector<std::size_t> next((count + piece - 1) / piece * rows);
+        const auto each = [&](const auto& add_at) {
+            parallel_for(count, piece, [&](std::size_t begin, std::size_t end) {
+                std::size_t* piece_next = next.data() + begin / piece * rows;
+                for (std::size_t i = begin; i < end; ++i)
+                    spans(static_cast<std::int32_t>(i), [&](int row, const IntRange& columns) {
+                        if (columns.begin < columns.end)
+                            add_at(piece_next[row]++, static_cast<std::int32_t>(i), columns);
+                    });
+            });
+        };
+        each([](std::size_t, std::int32_t, const IntRange&) {});
+        std::size_t total = 0;
+        for (std::size_t row = 0; row < rows; ++row) {
+            starts_[row] = total;
+            for (std::size_t i = row; i < next.size(); i += rows)
+                total += std::exchange(next[i], total);
+        }
+        starts_[rows] = total;
+        spans_ = std::make_unique_for_overwrite<Span[]>(total);
+        each([&](std::size_t at, std::int32_t item, const IntRange& columns) {
+            spans_[at] = {item, static_cast<std::uint16_t>(columns.begin),
+                          static_cast<std::uint16_t>(columns.end)};
+        });
     }
     std::span<const Span> operator[](int row) const {
         const auto r = static_cast<std::size_t>(row);
-        return std::span(spans_).subspan(starts_[r], starts_[r + 1] - starts_[r]);
+        return {spans_.get() + starts_[r], starts_[r + 1] - starts_[r]};
     }
 
 private:
-    struct Entry {
-        Span span;
-        int row;
-    };
-    std::vector<Entry> entries_;
+    static constexpr std::size_t piece = 1 << 14;
     std::vector<std::size_t> starts_;
-    std::vector<Span> spans_;
+    std::unique_ptr<Span[]> spans_;
 };
 
-std::size_t hash(const Point& p) {
+std::uint64_t hash(const Point& p) {
     std::uint64_t h = std::bit_cast<std::uint64_t>(p.x) * 0x9E3779B97F4A7C15u;
     h = (std::rotl(h, 29) ^ std::bit_cast<std::uint64_t>(p.y)) * 0xBF58476D1CE4E5B9u;
-    return static_cast<std::size_t>(h ^ (h >> 31));
+    return h ^ (h >> 31);
 }
 
-/// A hash table of indices: find_or_add returns the slot of an equal item, or an empty slot (-1) to
-/// fill.
-class IndexTable {
-public:
-    explicit IndexTable(std::size_t capacity) : slots_(std::bit_ceil(2 * capacity + 1), -1) {}
+/// The slot where a search with this hash begins, of `count` slots.
+std::size_t home(std::uint32_t hash, std::size_t count) {
+    return static_cast<std::size_t>((std::uint64_t{hash} * count) >> 32);
+}
+/// Slots of a hash table for so many items: 5 for 4.
+std::size_t slots_for(std::size_t items) { return items + items / 4 + 1; }
 
-    template <class Equal>
-    std::int32_t& find_or_add(std::size_t hash_value, const Equal& equal) {
-        const std::size_t mask = slots_.size() - 1;
-        for (std::size_t i = hash_value & mask;; i = (i + 1) & mask)
-            if (slots_[i] < 0 || equal(slots_[i])) return slots_[i];
+/// An item by its number, with half of its key's hash.
+struct Hashed {
+    std::uint32_t hash, item;
+};
+
+/// Items in groups that a core's cache holds; items with equal hashes are in one group, in order.
+class Groups {
+public:
+    /// list(i, add) calls add(hash, item) for the items of i, 0 <= i < count; `most`: about how
+    /// many items there are.
+    template <class List>
+    Groups(std::size_t count, std::size_t most, const List& list) {
+        const int bits = std::min(12, static_cast<int>(std::bit_width(most >> 15)));
+        const std::size_t groups = std::size_t{1} << bits;
+        std::vector<std::size_t> next((count + piece - 1) / piece * groups);
+        const auto each = [&](const auto& add_at) {
+            parallel_for(count, piece, [&](std::size_t begin, std::size_t end) {
+                std::size_t* piece_next = next.data() + begin / piece * groups;
+                for (std::size_t i = begin; i < end; ++i)
+                    list(i, [&](std::uint64_t hash, std::uint32_t item) {
+                        add_at(piece_next[(hash >> 32) >> (32 - bits)]++,
+                               Hashed{static_cast<std::uint32_t>(hash), item});
+                    });
+            });
+        };
+        each([](std::size_t, const Hashed&) {});
+        starts_.resize(groups + 1);
+        std::size_t total = 0;
+        for (std::size_t group = 0; group < groups; ++group) {
+            starts_[group] = total;
+            for (std::size_t i = group; i < next.size(); i += groups)
+                total += std::exchange(next[i], total);
+        }
+        starts_[groups] = total;
+        items_ = std::make_unique_for_overwrite<Hashed[]>(total);
+        each([&](std::size_t at, const Hashed& item) { items_[at] = item; });
+    }
+
+    /// Calls found(items, first) for each group, on several threads: items[first[i]] is the first
+    /// item that equal(item, other) says is equal to items[i].
+    template <class Equal, class Found>
+    void match(const Equal& equal, const Found& found) const {
+        parallel_for(starts_.size() - 1, 8, [&](std::size_t begin, std::size_t end) {
+            constexpr std::uint32_t empty = std::numeric_limits<std::uint32_t>::max();
+            std::vector<std::uint32_t> slots, first;
+            for (std::size_t group = begin; group < end; ++group) {
+                const std::span<const Hashed> items{items_.get() + starts_[group],
+                                                    starts_[group + 1] - starts_[group]};
+                slots.assign(slots_for(items.size()), empty);
+                first.resize(items.size());
+                for (std::uint32_t i = 0; i < items.size(); ++i) {
+                    std::size_t slot = home(items[i].hash, slots.size());
+                    while (slots[slot] != empty && !(items[slots[slot]].hash == items[i].hash &&
+                                                     equal(items[slots[slot]].item, items[i].item)))
+                        slot = slot + 1 < slots.size() ? slot + 1 : 0;
+                    if (slots[slot] == empty) slots[slot] = i;
+                    first[i] = slots[slot];
+                }
+                found(items, std::span<const std::uint32_t>(first));
+            }
+        });
     }
 
 private:
-    std::vector<std::int32_t> slots_;
+    static constexpr std::size_t piece = 1 << 16;
+    std::vector<std::size_t> starts_;
+    std::unique_ptr<Hashed[]> items_;
 };
 
-/// A corner of a triangle: of triangle `triangle`, the `corner`-th.
-struct Owner {
-    std::int32_t triangle;
-    std::int8_t corner;
-};
+/// A corner of a triangle, or the edge from it to the next one: 3 triangle + k. Below 2^31, as
+/// validate() sees to.
+using Corner = std::uint32_t;
 
 /// An edge of the layout's border: covered texels on one side only. A point that no triangle covers
 /// has its nearest point of the layout on one of these.
 struct BorderEdge {
+    Corner edge;              ///< Of the lowest triangle along it.
+    Corner owner_a, owner_b;  ///< The lowest triangle's corner at each end.
+};
+
+/// The edge with its ends in order.
+struct Edge {
     Point a, b;
-    double inverse_length2;
-    Owner owner_a, owner_b;          ///< The lowest triangle at each end.
-    std::int32_t triangle;           ///< The lowest triangle along the edge.
-    std::int8_t corner_a, corner_b;  ///< Its corners at a and b.
+    Corner corner_a, corner_b;
 };
 
 /// E(p) >= 0 on the triangle's side of a line. Computed alike for both triangles of a shared edge,
@@ -170,11 +242,13 @@ public:
           rows_((height + block_size - 1) / block_size),
           triangle_bins_(rows_),
           edge_bins_(rows_) {
-        bin_triangles();
+        find_places();
         if (margin_ >= 0) {
             find_border();
             bin_edges();
         }
+        bin_triangles();
+        place_ = {};
     }
 
     std::size_t block_count() const {
@@ -201,6 +275,10 @@ public:
     }
 
 private:
+    /// A triangle among those that have its three points. The third and further ones, and those
+    /// without area or far from the tile, count for nothing.
+    enum Place : std::uint8_t { no_place, alone, first_of_several, second };
+
     /// What is known of a texel's centre.
     enum State : std::uint8_t { outside, on_border, inside, inside_several };
 
@@ -267,46 +345,61 @@ private:
         return (p[1].x - p[0].x) * (p[2].y - p[0].y) - (p[1].y - p[0].y) * (p[2].x - p[0].x);
     }
 
-    /// The triangles with area that come within reach of the tile, into near_; of those, the ones
-    /// that may hold a centre, into bins. Of triangles in one place (stacked copies, faces that all
-    /// fill the tile) the first two tell all.
-    void bin_triangles() {
-        struct Place {
-            std::int32_t first;
-            bool twice;
+    /// Whether the triangle has area and comes within reach of the tile.
+    bool is_near(std::int32_t triangle) const {
+        const double far = margin_ >= 0 ? reach() : 0;
+        const std::array<Point, 3> p = points(triangle);
+        const auto [x_low, x_high] = std::minmax({p[0].x, p[1].x, p[2].x});
+        const auto [y_low, y_high] = std::minmax({p[0].y, p[1].y, p[2].y});
+        if (x_high < -far || x_low > width_ + far || y_high < -far || y_low > height_ + far)
+            return false;
+        const Triangle& t = mesh_.triangles[static_cast<std::size_t>(triangle)];
+        const auto uv = [&](std::size_t k) {
+            return mesh_.corner_uv[static_cast<std::size_t>(t[k])];
         };
-        std::vector<Place> places;
-        IndexTable table(mesh_.triangles.size());
-        const auto sorted = [](std::array<Point, 3> p) {
+        return area2(p) != 0 && uv_area_sign(uv(0), uv(1), uv(2)) != 0;
+    }
+
+    /// Of triangles in one place (stacked copies, faces that all fill the tile) the first two tell
+    /// all.
+    void find_places() {
+        const auto sorted = [&](std::uint32_t triangle) {
+            std::array<Point, 3> p = points(static_cast<std::int32_t>(triangle));
             std::sort(p.begin(), p.end());
             return p;
         };
-        const double far = margin_ >= 0 ? reach() : 0;
-        for (std::size_t i = 0; i < mesh_.triangles.size(); ++i) {
-            const Triangle& t = mesh_.triangles[i];
-            const auto index = static_cast<std::int32_t>(i);
-            const std::array<Point, 3> p = points(index);
+        const std::size_t count = mesh_.triangles.size();
+        const Groups groups(count, count, [&](std::size_t i, const auto& add) {
+            if (!is_near(static_cast<std::int32_t>(i))) return;
+            const std::array<Point, 3> p = points(static_cast<std::int32_t>(i));
+            add(hash(p[0]) + hash(p[1]) + hash(p[2]), static_cast<std::uint32_t>(i));
+        });
+        place_.assign(count, no_place);
+        groups.match([&](std::uint32_t a, std::uint32_t b) { return sorted(a) == sorted(b); },
+                     [&](std::span<const Hashed> items, std::span<const std::uint32_t> first) {
+                         for (std::size_t i = 0; i < items.size(); ++i) {
+                             Place& of_first = place_[items[first[i]].item];
+                             if (first[i] == i) {
+                                 of_first = alone;
+                             } else if (of_first == alone) {
+                                 of_first = first_of_several;
+                                 place_[items[i].item] = second;
+                             }
+                         }
+                     });
+    }
+
+    bool is_first(std::size_t triangle) const {
+        return place_[triangle] == alone || place_[triangle] == first_of_several;
+    }
+
+    /// The blocks of the triangles that may hold a centre.
+    void bin_triangles() {
+        triangle_bins_.build(place_.size(), [&](std::int32_t triangle, const auto& add) {
+            if (place_[static_cast<std::size_t>(triangle)] == no_place) return;
+            const std::array<Point, 3> p = points(triangle);
             const auto [x_low, x_high] = std::minmax({p[0].x, p[1].x, p[2].x});
             const auto [y_low, y_high] = std::minmax({p[0].y, p[1].y, p[2].y});
-            if (x_high < -far || x_low > width_ + far || y_high < -far || y_low > height_ + far)
-                continue;
-            const auto uv = [&](int k) {
-                return mesh_.corner_uv[static_cast<std::size_t>(t[static_cast<std::size_t>(k)])];
-            };
-            if (area2(p) == 0 || uv_area_sign(uv(0), uv(1), uv(2)) == 0) continue;
-            std::int32_t& slot =
-                table.find_or_add(hash(p[0]) + hash(p[1]) + hash(p[2]), [&](std::int32_t place) {
-                    return sorted(points(places[static_cast<std::size_t>(place)].first)) ==
-                           sorted(p);
-                });
-            if (slot < 0) {
-                slot = static_cast<std::int32_t>(places.size());
-                places.push_back({index, false});
-                if (margin_ >= 0) near_.push_back(index);
-            } else if (std::exchange(places[static_cast<std::size_t>(slot)].twice, true)) {
-                continue;
-            }
-
             const IntRange rows = block_range({y_low, y_high}, rows_);
             for (int row = rows.begin; row < rows.end; ++row) {
                 IntRange columns = block_range({x_low, x_high}, columns_);
@@ -318,10 +411,9 @@ private:
                         extend(x, x_range(p[k], p[(k + 1) % 3], band));
                     columns = block_range(x, columns_);
                 }
-                triangle_bins_.add(row, index, columns);
+                add(row, columns);
             }
-        }
-        triangle_bins_.build();
+        });
     }
 
     static void extend(Range& range, const Range& other) {
@@ -339,95 +431,108 @@ private:
                              0, count);
     }
 
-    void find_border() {
-        struct Edge {
-            Point a, b;
-            std::int32_t triangle;
-            std::int8_t corner_a, corner_b;
-            std::uint8_t sides;
-        };
-        std::vector<Edge> edges;
-        edges.reserve(2 * near_.size());
-        IndexTable edge_table(3 * near_.size());
-        for (const std::int32_t triangle : near_) {
-            const std::array<Point, 3> p = points(triangle);
-            const bool positive = area2(p) > 0;
-            for (std::int8_t k = 0; k < 3; ++k) {
-                std::int8_t ca = k, cb = static_cast<std::int8_t>((k + 1) % 3);
-                Point a = p[static_cast<std::size_t>(ca)], b = p[static_cast<std::size_t>(cb)];
-                const bool swapped = b < a;
-                if (swapped) std::swap(a, b), std::swap(ca, cb);
-                std::int32_t& slot =
-                    edge_table.find_or_add(hash(a) * 3 + hash(b), [&](std::int32_t e) {
-                        const Edge& other = edges[static_cast<std::size_t>(e)];
-                        return other.a == a && other.b == b;
-                    });
-                if (slot < 0) {
-                    slot = static_cast<std::int32_t>(edges.size());
-                    edges.push_back({a, b, triangle, ca, cb, 0});
-                }
-                edges[static_cast<std::size_t>(slot)].sides |= swapped == positive ? 1 : 2;
-            }
-        }
-        std::size_t border_count = 0;
-        for (const Edge& edge : edges) border_count += edge.sides != 3;
-        border_.reserve(border_count);
+    Point point_of(Corner corner) const { return point(mesh_.triangles[corner / 3][corner % 3]); }
 
-        // At a border vertex every triangle around it is equally near, those without a border edge
-        // too.
-        std::vector<Point> vertices;
-        std::vector<Owner> owners;
-        IndexTable vertex_table(2 * border_count);
-        const auto vertex = [&](const Point& p) -> std::int32_t& {
-            return vertex_table.find_or_add(hash(p), [&](std::int32_t v) {
-                return vertices[static_cast<std::size_t>(v)] == p;
+    Edge edge_of(Corner corner) const {
+        const Corner next = corner % 3 < 2 ? corner + 1 : corner - 2;
+        const Point a = point_of(corner), b = point_of(next);
+        return b < a ? Edge{b, a, next, corner} : Edge{a, b, corner, next};
+    }
+
+    void find_border() {
+        find_border_edges();
+        find_owners();
+    }
+
+    void find_border_edges() {
+        const std::size_t count = mesh_.triangles.size();
+        // An item is 2 corner + side: on which side of the edge its triangle lies.
+        const Groups groups(count, 3 * count, [&](std::size_t triangle, const auto& add) {
+            if (!is_first(triangle)) return;
+            const std::array<Point, 3> p = points(static_cast<std::int32_t>(triangle));
+            const bool positive = area2(p) > 0;
+            for (std::size_t k = 0; k < 3; ++k) {
+                const Point &from = p[k], &to = p[(k + 1) % 3];
+                const bool swapped = to < from;
+                const Point &a = swapped ? to : from, &b = swapped ? from : to;
+                add(hash(a) * 3 + hash(b),
+                    static_cast<std::uint32_t>(2 * (3 * triangle + k) + (swapped == positive)));
+            }
+        });
+        std::vector<std::uint8_t> is_border(3 * count);
+        groups.match(
+            [&](std::uint32_t item, std::uint32_t other) {
+                const Edge ours = edge_of(item / 2), theirs = edge_of(other / 2);
+                return ours.a == theirs.a && ours.b == theirs.b;
+            },
+            [&](std::span<const Hashed> items, std::span<const std::uint32_t> first) {
+                std::vector<unsigned> sides(items.size());
+                for (std::size_t i = 0; i < items.size(); ++i)
+                    sides[first[i]] |= items[i].item % 2 == 0 ? 1 : 2;
+                for (std::size_t i = 0; i < items.size(); ++i)
+                    is_border[items[i].item / 2] = first[i] == i && sides[i] != 3;
             });
+        border_.reserve(static_cast<std::size_t>(
+            std::count(is_border.begin(), is_border.end(), std::uint8_t{1})));
+        for (std::size_t corner = 0; corner < is_border.size(); ++corner)
+            if (is_border[corner]) border_.push_back({static_cast<Corner>(corner), 0, 0});
+    }
+
+    /// At a border vertex every triangle around it is equally near, those without a border edge
+    /// too.
+    void find_owners() {
+        constexpr Corner empty = std::numeric_limits<Corner>::max();
+        // A hash table of points; each slot holds the lowest corner at its point.
+        std::vector<std::atomic<Corner>> slots(slots_for(2 * border_.size()));
+        for (auto& slot : slots) slot.store(empty, std::memory_order_relaxed);
+        const auto slot_of = [&](const Point& p) -> std::atomic<Corner>& {
+            std::size_t i = home(static_cast<std::uint32_t>(hash(p)), slots.size());
+            for (;; i = i + 1 < slots.size() ? i + 1 : 0) {
+                const Corner corner = slots[i].load(std::memory_order_relaxed);
+                if (corner == empty || point_of(corner) == p) return slots[i];
+            }
         };
-        for (const Edge& edge : edges) {
-            if (edge.sides == 3) continue;
-            for (const Point& p : {edge.a, edge.b}) {
-                std::int32_t& slot = vertex(p);
-                if (slot >= 0) continue;
-                slot = static_cast<std::int32_t>(vertices.size());
-                vertices.push_back(p);
+        for (const BorderEdge& border : border_) {
+            const Edge edge = edge_of(border.edge);
+            slot_of(edge.a).store(edge.corner_a, std::memory_order_relaxed);
+            slot_of(edge.b).store(edge.corner_b, std::memory_order_relaxed);
+        }
+        constexpr std::size_t piece = 1 << 14;
+        parallel_for(mesh_.triangles.size(), piece, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t triangle = begin; triangle < end; ++triangle) {
+                if (!is_first(triangle)) continue;
+                for (std::size_t k = 0; k < 3; ++k) {
+                    const Corner corner = static_cast<Corner>(3 * triangle + k);
+                    std::atomic<Corner>& slot = slot_of(point_of(corner));
+                    Corner seen = slot.load(std::memory_order_relaxed);
+                    while (seen != empty && corner < seen &&
+                           !slot.compare_exchange_weak(seen, corner, std::memory_order_relaxed)) {
+                    }
+                }
             }
-        }
-        owners.assign(vertices.size(), {-1, 0});
-        for (const std::int32_t triangle : near_) {
-            const std::array<Point, 3> p = points(triangle);
-            for (std::int8_t k = 0; k < 3; ++k) {
-                const std::int32_t v = vertex(p[static_cast<std::size_t>(k)]);
-                if (v >= 0 && owners[static_cast<std::size_t>(v)].triangle < 0)
-                    owners[static_cast<std::size_t>(v)] = {triangle, k};
+        });
+        parallel_for(border_.size(), piece, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                const Edge edge = edge_of(border_[i].edge);
+                border_[i].owner_a = slot_of(edge.a).load(std::memory_order_relaxed);
+                border_[i].owner_b = slot_of(edge.b).load(std::memory_order_relaxed);
             }
-        }
-        for (const Edge& edge : edges) {
-            if (edge.sides == 3) continue;
-            const double dx = edge.b.x - edge.a.x, dy = edge.b.y - edge.a.y;
-            border_.push_back({edge.a, edge.b, 1 / (dx * dx + dy * dy),
-                               owners[static_cast<std::size_t>(vertex(edge.a))],
-                               owners[static_cast<std::size_t>(vertex(edge.b))], edge.triangle,
-                               edge.corner_a, edge.corner_b});
-        }
-        near_ = {};
+        });
     }
 
     void bin_edges() {
         const double far = reach();
-        for (std::size_t i = 0; i < border_.size(); ++i) {
-            const BorderEdge& edge = border_[i];
+        edge_bins_.build(border_.size(), [&](std::int32_t item, const auto& add) {
+            const Edge edge = edge_of(border_[static_cast<std::size_t>(item)].edge);
             const auto [y_low, y_high] = std::minmax(edge.a.y, edge.b.y);
             const IntRange rows = block_range({y_low - far, y_high + far}, rows_);
             for (int row = rows.begin; row < rows.end; ++row) {
                 const Range band{double(row) * block_size - far,
                                  double(row + 1) * block_size + far};
                 const Range x = x_range(edge.a, edge.b, band);
-                if (!x.empty())
-                    edge_bins_.add(row, static_cast<std::int32_t>(i),
-                                   block_range({x.low - far, x.high + far}, columns_));
+                if (!x.empty()) add(row, block_range({x.low - far, x.high + far}, columns_));
             }
-        }
-        edge_bins_.build();
+        });
     }
 
     /// The texels whose centre lies in a triangle; all others get "not covered".
@@ -550,9 +655,11 @@ private:
         const bool only_met = margin_ == 0;
         for (const auto& [item, begin, end] : edge_bins_[block.row]) {
             if (block.column < begin || block.column >= end) continue;
-            const BorderEdge& edge = border_[static_cast<std::size_t>(item)];
+            const BorderEdge& border = border_[static_cast<std::size_t>(item)];
+            const Edge edge = edge_of(border.edge);
             const Point &a = edge.a, &b = edge.b;
             const double dx = b.x - a.x, dy = b.y - a.y;
+            const double inverse_length2 = 1 / (dx * dx + dy * dy);
             const auto [y_low, y_high] = std::minmax(a.y, b.y);
             const IntRange rows =
                 whole_numbers({y_low - far - 0.5, y_high + far - 0.5}, block.y0, block.y1);
@@ -572,13 +679,13 @@ private:
                     double& best = distance_row[x_texel - block.x0];
                     if (best < 0) continue;
                     const double px = x_texel + 0.5;
-                    const double t = ((px - a.x) * dx + (py - a.y) * dy) * edge.inverse_length2;
+                    const double t = ((px - a.x) * dx + (py - a.y) * dy) * inverse_length2;
                     const double qx = t <= 0 ? a.x : t >= 1 ? b.x : a.x + t * dx;
                     const double qy = t <= 0 ? a.y : t >= 1 ? b.y : a.y + t * dy;
                     const double distance2 = (px - qx) * (px - qx) + (py - qy) * (py - qy);
                     if (only_met && meets(edge, x_texel, y)) met_row[x_texel - block.x0] = 1;
                     if (distance2 > best) continue;
-                    const CoverageTexel candidate = texel_on(edge, t);
+                    const CoverageTexel candidate = texel_on(border, edge, t);
                     CoverageTexel& texel = texel_row[x_texel];
                     if (distance2 < best || texel.triangle < 0 ||
                         candidate.triangle < texel.triangle)
@@ -590,22 +697,22 @@ private:
     }
 
     /// The point at a + t (b - a) of a border edge, kept on the edge.
-    static CoverageTexel texel_on(const BorderEdge& edge, double t) {
+    static CoverageTexel texel_on(const BorderEdge& border, const Edge& edge, double t) {
         double weights[3] = {0, 0, 0};
-        std::int32_t triangle = edge.triangle;
+        Corner corner = border.edge;
         if (t <= 0 || t >= 1) {
-            const Owner& owner = t <= 0 ? edge.owner_a : edge.owner_b;
-            triangle = owner.triangle;
-            weights[owner.corner] = 1;
+            corner = t <= 0 ? border.owner_a : border.owner_b;
+            weights[corner % 3] = 1;
         } else {
-            weights[edge.corner_a] = 1 - t;
-            weights[edge.corner_b] = t;
+            weights[edge.corner_a % 3] = 1 - t;
+            weights[edge.corner_b % 3] = t;
         }
-        return {triangle, static_cast<float>(weights[0]), static_cast<float>(weights[1])};
+        return {static_cast<std::int32_t>(corner / 3), static_cast<float>(weights[0]),
+                static_cast<float>(weights[1])};
     }
 
     /// Whether the edge passes through the open square of texel (x, y).
-    static bool meets(const BorderEdge& edge, int x, int y) {
+    static bool meets(const Edge& edge, int x, int y) {
         double low = -std::numeric_limits<double>::infinity(),
                high = std::numeric_limits<double>::infinity();
         const auto clip = [&](double from, double delta, double side) {
@@ -625,7 +732,7 @@ private:
     int margin_;  ///< -1: centres only.
     int columns_, rows_;
     Bins triangle_bins_, edge_bins_;
-    std::vector<std::int32_t> near_;
+    std::vector<Place> place_;  ///< Of each triangle.
     std::vector<BorderEdge> border_;
 };
 
@@ -642,12 +749,12 @@ TexelCoverage::TexelCoverage(const MeshView& mesh, int width, int height, Tile t
                            std::to_string(max_margin) + " texels");
     validate(mesh);
     require_uv(mesh);
-    triangles_.assign(mesh.triangles.begin(), mesh.triangles.end());
     texels_ = std::make_unique_for_overwrite<CoverageTexel[]>(static_cast<std::size_t>(width) *
                                                               static_cast<std::size_t>(height));
     const auto counts = Rasteriser(mesh, width, height, tile, margin).fill(texels_.get());
     covered_ = counts.covered;
     overlapping_ = counts.overlapping;
+    triangles_.assign(mesh.triangles.begin(), mesh.triangles.end());
 }
 
 double overlap_fraction(const MeshView& mesh, int resolution) {

@@ -31,6 +31,14 @@ TEST(MeshView, NamesTheFirstTriangleWithABadCorner) {
               std::string::npos);
 }
 
+TEST(MeshView, RefusesTrianglesWhoseCornersCannotBeCounted) {
+    const auto mesh = test::grid(1);
+    MeshView view = mesh.view();
+    view.triangles = {view.triangles.data(), 715827883};  // never read
+    EXPECT_EQ(message_of([&] { validate(view); }),
+              "the mesh has 715827883 triangles; at most 715827882 are allowed");
+}
+
 TEST(MeshView, NamesTheFirstBadCorner) {
     auto mesh = test::grid(2);
     mesh.corner_vert[7] = 9;

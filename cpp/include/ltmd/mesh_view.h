@@ -41,7 +41,8 @@ struct Tile {
 LTMD_API int udim(Tile tile);
 
 /// Throws InvalidInput when an index is out of range, the UV array has another length than the
-/// corners, or a UV is not finite; the message names the first culprit. An empty mesh is valid.
+/// corners, a UV is not finite, or there are more than 715827882 triangles; the message names the
+/// first culprit. An empty mesh is valid.
 LTMD_API void validate(const MeshView& mesh);
 
 /// Throws InvalidInput when the number of positions is not the mesh's vertex count, or a position
