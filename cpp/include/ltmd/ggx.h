@@ -58,7 +58,9 @@ public:
     Direction<Real> sample_visible(const Direction<Real>& v, const Uniform<Real>& u) const {
         const Direction<Real> w = normalized(Direction<Real>{alpha_x_ * v.x, alpha_y_ * v.y, v.z});
         const Real phi = 2 * std::numbers::pi_v<Real> * u.x;
-        const Real z = (1 - u.y) * (1 + w.z) - w.z;
+        // At 1 the normal may vanish.
+        const Real height = std::min(u.y, 1 - std::numeric_limits<Real>::epsilon());
+        const Real z = (1 - height) * (1 + w.z) - w.z;
         const Real sine = std::sqrt(std::max(Real{0}, (1 - z) * (1 + z)));
         return normalized(Direction<Real>{alpha_x_ * (sine * std::cos(phi) + w.x),
                                           alpha_y_ * (sine * std::sin(phi) + w.y),

@@ -41,6 +41,7 @@ from ltmd._ltmd import (
     wrinkle,
     write_exr,
 )
+from ltmd.warp import jacobian
 
 __all__ = [
     "GGX",
@@ -61,6 +62,7 @@ __all__ = [
     "convention",
     "deformation_tensor",
     "exr_metadata",
+    "jacobian",
     "lobe_parameters",
     "material_matrix",
     "passes",
