@@ -6,7 +6,10 @@
 #   examples/run.sh --list   their names
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
-all=(balloon suzanne)
+scenes=(balloon suzanne)
+# Made by the Python package alone: NAME.py --out FILE.png.
+plots=()
+all=("${scenes[@]}" "${plots[@]}")
 
 usage="usage: examples/run.sh [--list | NAME…], NAME is one of: ${all[*]}"
 names=()
@@ -27,6 +30,10 @@ done
 # shellcheck source=../tests/environment.sh
 . "$here/../tests/environment.sh"
 out=$here/out
+needs_blender=
+for name in "${names[@]}"; do
+    case " ${scenes[*]} " in *" $name "*) needs_blender=1 ;; esac
+done
 steps=$((2 + ${#names[@]}))
 step=0
 say() {
@@ -37,25 +44,39 @@ say() {
 say "installing what is missing (the first time some minutes: Blender, OpenEXR)"
 ltmd_system_packages
 ltmd_venv_tools
-ltmd_venv_blender
+[ -z "$needs_blender" ] || ltmd_venv_blender
 ltmd_openexr
 
-say "building the library and the Blender extension"
+say "building the library${needs_blender:+ and the Blender extension}"
 ltmd_wheel
-ltmd_extension
+[ -z "$needs_blender" ] || ltmd_extension
 
-for name in "${names[@]}"; do
-    say "$name: simulating, baking and rendering"
-    mkdir -p "$out/$name"
-    log=$out/$name/blender.log
+scene() {
+    say "$1: simulating, baking and rendering"
+    mkdir -p "$out/$1"
+    local log=$out/$1/blender.log
     # The user folder is made anew, so that the extension is the one just built.
-    rm -rf "$out/$name/blender_user" "$out/$name/tension"
-    if ! "$LTMD_BPY/bin/python" -B "$here/$name.py" --extension "$LTMD_EXTENSION_ZIP" --out "$out/$name" >"$log"; then
+    rm -rf "$out/$1/blender_user" "$out/$1/tension"
+    if ! "$LTMD_BPY/bin/python" -B "$here/$1.py" --extension "$LTMD_EXTENSION_ZIP" --out "$out/$1" >"$log"; then
         tail -n 20 "$log" >&2
-        echo "error: $name was not made; Blender's log: $log" >&2
+        echo "error: $1 was not made; Blender's log: $log" >&2
         exit 1
     fi
-    "$LTMD_TOOLS/bin/python" -B "$here/contact_sheet.py" "$out/$name/sheet.json" "$out/$name.png"
-    echo "      picture: $out/$name.png"
-    echo "      scene:   $out/$name/$name.blend, baked images: $out/$name/tension"
+    "$LTMD_TOOLS/bin/python" -B "$here/contact_sheet.py" "$out/$1/sheet.json" "$out/$1.png"
+    echo "      picture: $out/$1.png"
+    echo "      scene:   $out/$1/$1.blend, baked images: $out/$1/tension"
+}
+
+plot() {
+    say "$1: computing and plotting"
+    "$LTMD_TOOLS/bin/python" -B "$here/$1.py" --out "$out/$1.png"
+    echo "      picture: $out/$1.png"
+}
+
+mkdir -p "$out"
+for name in "${names[@]}"; do
+    case " ${scenes[*]} " in
+        *" $name "*) scene "$name" ;;
+        *) plot "$name" ;;
+    esac
 done
