@@ -132,11 +132,12 @@ struct Hashed {
     std::uint32_t hash, item;
 };
 
-/// Items in groups that a core's cache holds; items with equal hashes are in one group, in order.
+/// Items in groups, in order. Equal items are in one group and have one hash.
 class Groups {
 public:
-    /// list(i, add) calls add(hash, item) for the items of i, 0 <= i < count; `most`: about how
-    /// many items there are.
+    /// list(i, add) calls add(cell, hash, item) for the items of i, 0 <= i < count; `most`: about
+    /// how many items there are. Items of one cell are in one group: matching them reads memory
+    /// that a core's cache holds.
     template <class List>
     Groups(std::size_t count, std::size_t most, const List& list) {
         const int bits = std::min(12, static_cast<int>(std::bit_width(most >> 15)));
@@ -146,8 +147,8 @@ public:
             parallel_for(count, piece, [&](std::size_t begin, std::size_t end) {
                 std::size_t* piece_next = next.data() + begin / piece * groups;
                 for (std::size_t i = begin; i < end; ++i)
-                    list(i, [&](std::uint64_t hash, std::uint32_t item) {
-                        add_at(piece_next[(hash >> 32) >> (32 - bits)]++,
+                    list(i, [&](std::uint64_t cell, std::uint64_t hash, std::uint32_t item) {
+                        add_at(piece_next[(cell >> 32) >> (32 - bits)]++,
                                Hashed{static_cast<std::uint32_t>(hash), item});
                     });
             });
@@ -341,6 +342,12 @@ private:
         return {point(t[0]), point(t[1]), point(t[2])};
     }
 
+    /// Neighbours have the same number, and equal points.
+    std::uint64_t cell(const Point& p) const {
+        constexpr double cells = 128;  // each way
+        return hash({std::floor(p.x * (cells / width_)), std::floor(p.y * (cells / height_))});
+    }
+
     static double area2(const std::array<Point, 3>& p) {
         return (p[1].x - p[0].x) * (p[2].y - p[0].y) - (p[1].y - p[0].y) * (p[2].x - p[0].x);
     }
@@ -372,7 +379,8 @@ private:
         const Groups groups(count, count, [&](std::size_t i, const auto& add) {
             if (!is_near(static_cast<std::int32_t>(i))) return;
             const std::array<Point, 3> p = points(static_cast<std::int32_t>(i));
-            add(hash(p[0]) + hash(p[1]) + hash(p[2]), static_cast<std::uint32_t>(i));
+            add(cell(std::min({p[0], p[1], p[2]})), hash(p[0]) + hash(p[1]) + hash(p[2]),
+                static_cast<std::uint32_t>(i));
         });
         place_.assign(count, no_place);
         groups.match([&](std::uint32_t a, std::uint32_t b) { return sorted(a) == sorted(b); },
@@ -455,7 +463,7 @@ private:
                 const Point &from = p[k], &to = p[(k + 1) % 3];
                 const bool swapped = to < from;
                 const Point &a = swapped ? to : from, &b = swapped ? from : to;
-                add(hash(a) * 3 + hash(b),
+                add(cell(a), hash(a) * 3 + hash(b),
                     static_cast<std::uint32_t>(2 * (3 * triangle + k) + (swapped == positive)));
             }
         });
