@@ -8,4 +8,7 @@ DISTRIBUTIONS = {
     "GGX(0.3)": (ltmd.GGX(0.3), 0.3),
     "GGX(1)": (ltmd.GGX(1.0), 1.0),
     "GGX(0.5, 0.1)": (ltmd.GGX(0.5, 0.1), 0.2),
+    "Beckmann(0.05)": (ltmd.Beckmann(0.05), 0.05),
+    "Beckmann(0.6)": (ltmd.Beckmann(0.6), 0.6),
+    "Beckmann(0.4, 0.1)": (ltmd.Beckmann(0.4, 0.1), 0.2),
 }

@@ -19,7 +19,8 @@ GEOMETRY = [
 ]  # fmt: skip
 DISTRIBUTION = [
     "require_range", "matrix2", "direction", "slope_distribution", "transformed_distribution",
-    "any_distribution", "special_functions", "visible_normals", "lobe_mixture", "ggx", "beckmann",
+    "any_distribution", "special_functions", "error_function", "visible_normals", "lobe_mixture",
+    "ggx", "beckmann",
     "beckmann_mixture", "tabulated", "gtr", "std_distribution", "phong", "sheen", "discrete_ggx",
     "ashikhmin_shirley", "gauss", "schlick_mdf", "sawicki_ds", "ellipsoid_ndf",
     "non_centred_distribution", "fresnel", "masking", "v_cavity", "microfacet_brdf",

@@ -7,6 +7,7 @@ up; tensions are (t11, t12, t22) of T = [[t11, t12], [0, t22]]; (1, 0, 1) is the
 
 from ltmd._ltmd import (
     GGX,
+    Beckmann,
     Cancelled,
     Distribution,
     FileError,
@@ -21,6 +22,7 @@ from ltmd._ltmd import (
     __version__,
     alpha2,
     bake,
+    beckmann_lambda_rational,
     convention,
     deformation_tensor,
     exr_metadata,
@@ -45,6 +47,7 @@ from ltmd.warp import jacobian
 
 __all__ = [
     "GGX",
+    "Beckmann",
     "Cancelled",
     "Distribution",
     "FileError",
@@ -59,6 +62,7 @@ __all__ = [
     "__version__",
     "alpha2",
     "bake",
+    "beckmann_lambda_rational",
     "convention",
     "deformation_tensor",
     "exr_metadata",
