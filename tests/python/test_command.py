@@ -361,6 +361,65 @@ def test_files_that_are_no_meshes(tmp_path, tube):
     run("tension", rest, plain, *out)
 
 
+TRIANGLE = "v 0 0 0\nv 1 0 0\nv 0 1 0\n\n# drawn\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n"
+
+
+@pytest.mark.parametrize("ends", ["\n", "\r\n", "\r"])
+@pytest.mark.parametrize(
+    "old, new, said",
+    [
+        ("v 1 0 0", "v 1 nan 0", "line 2: a vertex has 'nan', not a finite number"),
+        ("v 0 1 0", "v -inf 1 0", "line 3: a vertex has '-inf', not a finite number"),
+        ("v 0 1 0", "v 0 1e39 0", "line 3: a vertex has '1e39', not a finite number"),
+        ("v 0 1 0", "v 0 one 0", "line 3: a vertex has 'one', not a finite number"),
+        ("v 0 1 0", "v 0 1", "line 3: a vertex has 2 of 3 numbers"),
+        ("vt 1 0", "vt 1 inf", "line 7: a texture coordinate has 'inf', not a finite number"),
+        ("3/3", "4/3", "line 9: a face uses vertex 4 of 3"),
+        ("3/3", "0/3", "line 9: a face uses vertex 0 of 3"),
+        ("3/3", "-4/3", "line 9: a face uses vertex -4 of 3"),
+        ("3/3", "3/-9", "line 9: a face uses texture coordinate -9 of 3"),
+        ("3/3", "4294967299/3", "line 9: a face uses the index 4294967299/3"),
+    ],
+)
+def test_bad_numbers_are_named_by_line(tmp_path, ends, old, new, said):
+    good, bad = tmp_path / "good.obj", tmp_path / "bad.obj"
+    good.write_bytes(TRIANGLE.replace("\n", ends).encode())
+    bad.write_bytes(TRIANGLE.replace(old, new).replace("\n", ends).encode())
+    out = ["-o", tmp_path / "x.exr", "--size", 8]
+    for paths in ((bad, good), (good, bad)):
+        assert f"{bad}: {said}" in run("tension", *paths, *out, code=BAD_INPUT).stderr
+    assert not (tmp_path / "x.exr").exists()
+    run("tension", good, good, *out)
+
+
+def test_numbers_of_every_form(tmp_path):
+    path = tmp_path / "forms.obj"
+    forms = {"v 1 0 0": "v +1. -0 0e5 1.0", "vt 1 0": "vt 1.0 .0 0", "vt 0 0": "vt 0"}
+    text = TRIANGLE
+    for old, new in forms.items():
+        text = text.replace(old, new)
+    path.write_text(text.replace("f 1/1 2/2 3/3", "f -3/-3/ 2/2 3/3"))
+    out = tmp_path / "x.exr"
+    run("tension", path, path, "-o", out, "--size", 8)
+    assert (pixels(out)[..., :3] == (1, 0, 1)).all()
+
+
+def test_file_names_in_other_scripts(tmp_path):
+    folder = tmp_path / "Ordner ä 日本"
+    folder.mkdir()
+    mesh = quads(2, 2)
+    rest = mesh.write(folder / "Größe.obj")
+    out = folder / "größe_<pass>.<frame>.exr"
+    run("tension", rest, rest, "-o", out, "--frames", 3, "--size", 8)
+    written = folder / "größe_tension.0003.exr"
+    assert ltmd.exr_metadata(written)["ltmd:object"] == "Größe"
+    assert "größe_tension: 1 frame" in run("verify", folder).stdout
+    assert "8 x 8" in run("info", written).stdout
+    missing = folder / "fehlt ø.obj"
+    said = run("tension", missing, rest, "-o", out, "--frames", 3, code=BAD_INPUT).stderr
+    assert "fehlt ø.obj" in said
+
+
 def test_overlap_can_be_allowed(tmp_path):
     mesh = quads(9, 6, wrap=True, tiles=3)
     path = changed(mesh, uvs=mesh.uvs % 1).write(tmp_path / "rest.obj")
