@@ -410,13 +410,18 @@ class Bake:
             )
         matrix = metric_matrix(obj.matrix_world)
         try:
-            self._bakers_for(target, matrix)
+            self._measure_in(target, matrix)
             if matrix is not None:
                 positions = transformed(positions, matrix)
             if self.settings.passes:
                 paths = self._paths(target, target.tiles, frame)
                 for tile, files in paths.items():
-                    target.bakers[tile].frame(positions, files, metadata={"ltmd:frame": str(frame)})
+                    self._baker(target, tile).frame(
+                        positions,
+                        files,
+                        metadata={"ltmd:frame": str(frame)},
+                        rest=target.prepared,
+                    )
                     target.files += files.values()
             if self.settings.usd:
                 path = self._usd_path(target, frame)
@@ -494,19 +499,21 @@ class Bake:
             )
         return self.ltmd.Mesh(arrays.triangles, arrays.corner_vert, uv, len(arrays.positions))
 
-    def _bakers_for(self, target, matrix):
-        """Bakers whose rest state is measured in the metric of the object at this frame."""
+    def _measure_in(self, target, matrix):
+        """Measures the rest state in the metric of the object at this frame."""
         metric = np.eye(3) if matrix is None else matrix.T @ matrix
         known = target.prepared is not None
         if known and np.abs(metric - target.metric).max() <= METRIC_TOLERANCE:
             return
-        self._close(target)
         positions = target.arrays.positions
         if matrix is not None:
             positions = transformed(positions, matrix)
         target.prepared = self.ltmd.RestState(target.mesh, positions)
         target.metric = metric
-        for tile in target.tiles if self.settings.passes else ():
+
+    def _baker(self, target, tile):
+        baker = target.bakers.get(tile)
+        if baker is None:
             baker = self.ltmd.SequenceBaker(
                 target.mesh,
                 target.prepared,
@@ -523,6 +530,7 @@ class Bake:
             )
             target.bakers[tile] = baker
             target.coverage[naming.udim(tile)] = dict(baker.coverage_report)
+        return baker
 
     def _close(self, target):
         bakers, target.bakers = target.bakers, {}

@@ -10,20 +10,23 @@ struct Report {
     std::shared_ptr<const Mesh> mesh;
 };
 
+std::shared_ptr<PreparedRest> prepare_positions(const std::shared_ptr<const Mesh>& mesh,
+                                                py::handle positions, const char* name) {
+    const auto array = require<float>(positions, name, {-1, 3});
+    const MeshView view = mesh->view();
+    const auto points = items<Vec3f>(array);
+    py::gil_scoped_release release;
+    return std::make_shared<PreparedRest>(PreparedRest{mesh, RestState(view, points)});
+}
+
 }  // namespace
 
 std::shared_ptr<const PreparedRest> prepare(const std::shared_ptr<const Mesh>& mesh,
                                             py::handle rest) {
-    if (py::isinstance<PreparedRest>(rest)) {
-        auto prepared = rest.cast<std::shared_ptr<PreparedRest>>();
-        if (prepared->mesh != mesh) throw py::value_error("rest was prepared for another mesh");
-        return prepared;
-    }
-    const auto positions = require<float>(rest, "rest", {-1, 3});
-    const MeshView view = mesh->view();
-    const auto points = items<Vec3f>(positions);
-    py::gil_scoped_release release;
-    return std::make_shared<PreparedRest>(PreparedRest{mesh, RestState(view, points)});
+    if (!py::isinstance<PreparedRest>(rest)) return prepare_positions(mesh, rest, "rest");
+    auto prepared = rest.cast<std::shared_ptr<PreparedRest>>();
+    if (prepared->mesh != mesh) throw py::value_error("rest was prepared for another mesh");
+    return prepared;
 }
 
 void bind_rest_state(py::module_& module) {
@@ -67,11 +70,7 @@ mesh: Mesh. positions: float32[V, 3] in the metric of the rendered object.
 Holds R^-1 and the area of each triangle and the UV fan of each corner (microsurface-transformations, section 5.1).
 Raises ValueError for another vertex count (both counts) or a position that is not finite (the first vertex is named).)")
         .def(py::init([](const std::shared_ptr<Mesh>& mesh, py::handle positions) {
-                 const auto array = require<float>(positions, "positions", {-1, 3});
-                 const MeshView view = mesh->view();
-                 const auto points = items<Vec3f>(array);
-                 py::gil_scoped_release release;
-                 return std::make_shared<PreparedRest>(PreparedRest{mesh, RestState(view, points)});
+                 return prepare_positions(mesh, positions, "positions");
              }),
              "mesh"_a, "positions"_a)
         .def_property_readonly(

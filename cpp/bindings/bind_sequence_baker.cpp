@@ -13,11 +13,20 @@ struct Baker {
     SequenceBaker baker;
 };
 
+/// The baker's end waits for its writers; other Python threads run meanwhile.
+struct Release {
+    void operator()(Baker* baker) const {
+        const auto rest = std::move(baker->rest);  // holds NumPy arrays: freed with the GIL
+        py::gil_scoped_release release;
+        delete baker;
+    }
+};
+
 }  // namespace
 
 void bind_sequence_baker(py::module_& module) {
     using namespace py::literals;
-    py::class_<Baker>(
+    py::class_<Baker, std::unique_ptr<Baker, Release>>(
         module, "SequenceBaker",
         R"(Bakes the frames of an animation into EXR files; compressing and writing overlap with the next frame.
 
@@ -47,7 +56,7 @@ Files are RGBA, A = 1 (in the pass roughness A is data). Use as a context manage
                                                lobe};
                  const MeshView view = mesh->view();
                  py::gil_scoped_release release;
-                 return std::unique_ptr<Baker>(new Baker{
+                 return std::unique_ptr<Baker, Release>(new Baker{
                      prepared, SequenceBaker(view, prepared->state, width, height, options)});
              }),
              "mesh"_a, "rest"_a, "width"_a, "height"_a,
@@ -58,20 +67,23 @@ Files are RGBA, A = 1 (in the pass roughness A is data). Use as a context manage
              "strength"_a = 1.0, "height_response"_a = 0.0)
         .def(
             "frame",
-            [](Baker& self, py::handle deformed, const py::dict& paths, const py::dict& metadata) {
+            [](Baker& self, py::handle deformed, const py::dict& paths, const py::dict& metadata,
+               py::handle rest) {
                 const auto positions = require<float>(deformed, "deformed", {-1, 3});
                 std::map<std::string, std::string> files;
                 for (const auto& [pass, path] : paths)
                     files[pass.cast<std::string>()] = parse_path(path);
                 const Metadata attributes = parse_metadata(metadata);
                 const auto points = items<Vec3f>(positions);
+                const auto prepared = rest.is_none() ? self.rest : prepare(self.rest->mesh, rest);
                 py::gil_scoped_release release;
-                self.baker.frame(points, files, attributes);
+                self.baker.frame(prepared->state, points, files, attributes);
             },
-            "deformed"_a, "paths"_a, "metadata"_a = py::dict(),
+            "deformed"_a, "paths"_a, "metadata"_a = py::dict(), py::kw_only(),
+            "rest"_a = py::none(),
             R"(Measure float32[V, 3] and queue one file per pass: paths = {pass: path}. Returns once queued; waits while in_flight frames are unwritten.
 
-Raises ValueError for bad input, OSError that a writer met earlier, ltmd.Cancelled after cancel().)")
+rest: RestState of the same mesh, or float32[V, 3], instead of the baker's own. Raises ValueError for bad input, OSError that a writer met earlier, ltmd.Cancelled after cancel().)")
         .def(
             "cancel", [](Baker& self) { self.baker.cancel(); },
             py::call_guard<py::gil_scoped_release>(),

@@ -62,12 +62,17 @@ void require_count(const char* what, std::size_t mesh, std::size_t rest) {
                            ", its rest state " + std::to_string(rest));
 }
 
+void require_rest_of(std::size_t triangles, std::size_t corners, std::size_t vertices,
+                     const RestState& rest) {
+    require_count("triangles", triangles, rest.triangle_count());
+    require_count("corners", corners, rest.corner_count());
+    require_count("vertices", vertices, rest.vertex_count());
+}
+
 const SequenceOptions& validated(const SequenceOptions& options, const MeshView& mesh,
                                  const RestState& rest) {
-    require_count("triangles", mesh.triangles.size(), rest.triangle_count());
-    require_count("corners", mesh.corner_vert.size(), rest.corner_count());
-    require_count("vertices", static_cast<std::size_t>(std::max(0, mesh.vertex_count)),
-                  rest.vertex_count());
+    require_rest_of(mesh.triangles.size(), mesh.corner_vert.size(),
+                    static_cast<std::size_t>(std::max(0, mesh.vertex_count)), rest);
     std::set<std::string> seen;
     for (const std::string& pass : options.passes) {
         pass_channels(pass);  // throws for an unknown one
@@ -224,9 +229,11 @@ struct SequenceBaker::State {
         bake(coverage, corners, channels, background, 4, pixels);
     }
 
-    void frame(std::span<const Vec3f> deformed, const std::map<std::string, std::string>& paths,
-               const Metadata& metadata) {
+    void frame(const RestState& frame_rest, std::span<const Vec3f> deformed,
+               const std::map<std::string, std::string>& paths, const Metadata& metadata) {
         const std::lock_guard one_frame_at_a_time(frame_mutex);
+        require_rest_of(coverage.triangles().size(), coverage.corner_count(), rest.vertex_count(),
+                        frame_rest);
         std::set<std::string> seen;
         for (const auto& [pass, path] : paths) {
             if (std::find(options.passes.begin(), options.passes.end(), pass) ==
@@ -238,8 +245,8 @@ struct SequenceBaker::State {
 
         Frame& frame = wait_for_frame();
         try {
-            tensions.resize(tension_count(rest, options.per));
-            tension(rest, deformed, options.per, tensions);
+            tensions.resize(tension_count(frame_rest, options.per));
+            tension(frame_rest, deformed, options.per, tensions);
             for (const auto& [pass, path] : paths) bake_pass(pass, frame.pixels[pass]);
 
             std::deque<File> files;
@@ -313,7 +320,13 @@ SequenceBaker::~SequenceBaker() = default;
 void SequenceBaker::frame(std::span<const Vec3f> deformed,
                           const std::map<std::string, std::string>& paths,
                           const Metadata& metadata) {
-    state_->frame(deformed, paths, metadata);
+    state_->frame(state_->rest, deformed, paths, metadata);
+}
+
+void SequenceBaker::frame(const RestState& rest, std::span<const Vec3f> deformed,
+                          const std::map<std::string, std::string>& paths,
+                          const Metadata& metadata) {
+    state_->frame(rest, deformed, paths, metadata);
 }
 
 void SequenceBaker::cancel() { state_->cancel(); }

@@ -142,17 +142,25 @@ def test_object_scale_is_not_stretch(tmp_path):
         obj.rotation_euler = (0.3, 0.4, 0.5)
         rest = at_rest(obj)
         frames = {f: evaluated(obj, f) for f in (1, 2, 3, 4)}
+        import ltmd
+        made, baker = [], ltmd.SequenceBaker
+        def counted(*args, **options):
+            made.append(1)
+            return baker(*args, **options)
+        ltmd.SequenceBaker = counted
         bake([obj], [1, 2, 3, 4], ARGUMENTS)
+        ltmd.SequenceBaker = baker
         still = sheet("Still", cells=6)
         still.scale = (3, 0.5, 2)
         still.keyframe_insert("scale", frame=1)
         still.scale = (0.2, 0.5, -2)
         still.keyframe_insert("scale", frame=2)
         work = bake([still], [1, 2], ARGUMENTS)
-        report(rest=rest, frames=frames, still=work.targets[0].files)
+        report(rest=rest, frames=frames, still=work.targets[0].files, bakers=len(made))
         """,
         arguments=str(tmp_path),
     )
+    assert got["bakers"] == 1  # the coverage does not depend on the scale
     differ = []
     for frame, deformed in got["frames"].items():
         path = tmp_path / f"Sheet_tension.{int(frame):04d}.exr"

@@ -131,6 +131,31 @@ TEST(SequenceBaker, WritesEachFrameOfEachPass) {
         }
 }
 
+TEST(SequenceBaker, AFrameMayHaveItsOwnRestState) {
+    const Strip strip, other = [] {
+        Strip wide;
+        for (Vec3f& p : wide.rest) p[0] *= 2;
+        return wide;
+    }();
+    const TemporaryFolder folder;
+    SequenceOptions options;
+    options.margin = 2;
+    const RestState rest(strip.view(), strip.rest);
+    SequenceBaker baker(strip.view(), rest, width, height, options);
+    baker.frame(strip.uneven(), {{"tension", folder / "own"}});
+    baker.frame(RestState(other.view(), other.rest), strip.uneven(),
+                {{"tension", folder / "other"}});
+    MeshView fewer = strip.view();
+    fewer.triangles = fewer.triangles.first(1);
+    EXPECT_THROW(
+        baker.frame(RestState(fewer, strip.rest), strip.uneven(), {{"tension", folder / "none"}}),
+        InvalidInput);
+    baker.finish();
+    EXPECT_EQ(folder.names().size(), 2u);
+    expect_file(folder / "own", strip, strip.uneven(), Per::corner, "tension");
+    expect_file(folder / "other", other, strip.uneven(), Per::corner, "tension");
+}
+
 TEST(SequenceBaker, AUniformStretchIsReadBackAsItsMatrix) {
     const Strip strip;
     const RestState rest(strip.view(), strip.rest);

@@ -24,6 +24,7 @@ def child(code, *arguments, **environment):
         text=True,
         cwd=HERE,
         env=dict(os.environ, **environment),
+        timeout=300,
     )
     assert done.returncode == 0, done.stderr
     return done.stdout
@@ -189,7 +190,7 @@ FAILING = r"""
 #include <sys/uio.h>
 #include <unistd.h>
 
-/* The disk is full after so many bytes in regular files. */
+/* The disk is full after so many bytes in regular files, or writing waits until a file exists. */
 static long left;
 __attribute__((constructor)) static void start(void) {
     const char *text = getenv("DISK_BYTES");
@@ -198,6 +199,8 @@ __attribute__((constructor)) static void start(void) {
 static int room(int fd, size_t size) {
     struct stat info;
     if (fd < 3 || fstat(fd, &info) || !S_ISREG(info.st_mode)) return 1;
+    const char *wanted = getenv("WRITES_WAIT_FOR");
+    while (wanted && access(wanted, F_OK)) usleep(1000);
     return __atomic_sub_fetch(&left, (long)size, __ATOMIC_SEQ_CST) >= 0;
 }
 ssize_t write(int fd, const void *data, size_t size) {
@@ -279,6 +282,31 @@ def test_a_rename_that_fails(failing_files, tmp_path):
     assert not [name for name in frames_in(tmp_path) if not name.startswith("ball_tension.")]
     for name in set(frames_in(tmp_path)) - {old.name}:
         assert ltmd.read_exr(tmp_path / name).shape == (64, 64, 4)
+
+
+FORGOTTEN = """
+import os, sys, threading, time
+import ltmd, meshes
+folder, wanted = sys.argv[1:]
+shape = meshes.sphere(12, 8)
+mesh = shape.mesh()
+baker = ltmd.SequenceBaker(mesh, shape.rest(mesh), 64, 64)
+baker.frame(shape.positions, {"tension": f"{folder}/ball_tension.0001.exr"})
+while not os.listdir(folder):
+    time.sleep(0.001)
+threading.Timer(0.2, lambda: open(wanted, "w").close()).start()
+del mesh, shape
+del baker
+print("waited", os.path.exists(wanted), os.listdir(folder))
+"""
+
+
+def test_a_forgotten_baker_lets_other_threads_run(failing_files, tmp_path):
+    """Its end waits for a file that only another Python thread can let go on."""
+    folder, wanted = tmp_path / "out", tmp_path / "go on"
+    folder.mkdir()
+    out = child(FORGOTTEN, folder, wanted, LD_PRELOAD=failing_files, WRITES_WAIT_FOR=str(wanted))
+    assert out == "waited True ['ball_tension.0001.exr']\n"
 
 
 @pytest.mark.parametrize("call", ["write_exr", "verify", "read_exr"])

@@ -274,6 +274,43 @@ def test_forgotten_baker_leaves_no_half_file(shape, tmp_path):
     assert set(os.listdir(tmp_path)) <= {"ball_tension.0001.exr"}
 
 
+def test_file_names_in_other_scripts(shape, tmp_path):
+    folder = tmp_path / "Ordner ä 日本"
+    folder.mkdir()
+    path = folder / "größe_tension.0001.exr"
+    with baker(shape, metadata={"ltmd:object": "Größe"}) as sequence:
+        sequence.frame(deformed(shape, 1), {"tension": path})
+    assert os.listdir(folder) == [path.name]
+    assert ltmd.read_exr(path).shape == (64, 64, 4)
+    assert ltmd.exr_metadata(path)["ltmd:object"] == "Größe"
+    assert ltmd.verify(folder).sequences == {"größe_tension": [1]}
+    with pytest.raises(OSError, match="fehlt ø"):
+        ltmd.read_exr(folder / "fehlt ø.exr")
+
+
+def test_a_frame_with_its_own_rest_state(shape, tmp_path):
+    """One coverage for an object whose metric changes."""
+    mesh = shape.mesh()
+    flat = np.ascontiguousarray(shape.positions * np.float32([1, 2, 0.5]))
+    moved = deformed(shape, 1)
+    with ltmd.SequenceBaker(mesh, shape.rest(mesh), 64, 64) as sequence:
+        sequence.frame(moved, {"tension": name(tmp_path, 1)})
+        sequence.frame(moved, {"tension": name(tmp_path, 2)}, rest=flat)
+        prepared = ltmd.RestState(mesh, flat)
+        sequence.frame(moved, {"tension": name(tmp_path, 3)}, rest=prepared)
+        del prepared
+        sequence.frame(moved, {"tension": name(tmp_path, 4)})
+        with pytest.raises(ValueError, match="another mesh"):
+            sequence.frame(moved, {"tension": name(tmp_path, 5)}, rest=shape.rest())
+        with pytest.raises(ValueError, match="vertices"):
+            sequence.frame(moved, {"tension": name(tmp_path, 5)}, rest=flat[1:])
+    assert len(os.listdir(tmp_path)) == 4
+    for frame, rest in ((1, shape.positions), (2, flat), (3, flat), (4, shape.positions)):
+        expected = ltmd.bake(mesh, ltmd.tension(mesh, rest, moved), 64, 64)
+        pixels = ltmd.read_exr(name(tmp_path, frame))
+        assert_same_bits(np.ascontiguousarray(pixels[..., :3]), expected)
+
+
 def test_finish_and_use_again(shape, tmp_path):
     sequence = baker(shape)
     sequence.frame(deformed(shape, 1), {"tension": name(tmp_path, 1)})

@@ -56,6 +56,11 @@ public:
     void frame(std::span<const Vec3f> deformed, const std::map<std::string, std::string>& paths,
                const Metadata& metadata = {});
 
+    /// As above with another rest state of the same mesh, such as one in another metric; it need
+    /// not outlive the call. Throws InvalidInput for one of another mesh size.
+    void frame(const RestState& rest, std::span<const Vec3f> deformed,
+               const std::map<std::string, std::string>& paths, const Metadata& metadata = {});
+
     /// Drops queued files; complete files stay, none is left half-written. Does not wait for the
     /// files being written.
     void cancel();
