@@ -58,5 +58,6 @@ void bind_threads(py::module_& module);
 void bind_any_distribution(py::module_& module);
 void bind_ggx(py::module_& module);
 void bind_beckmann(py::module_& module);
+void bind_unit_mdf(py::module_& module);
 
 }  // namespace ltmd::python

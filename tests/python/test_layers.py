@@ -18,7 +18,8 @@ GEOMETRY = [
     "deformation_tensor", "texel_coverage", "bake",
 ]  # fmt: skip
 DISTRIBUTION = [
-    "require_range", "matrix2", "direction", "slope_distribution", "transformed_distribution",
+    "require_range", "unit_mdf", "unit_form",
+    "matrix2", "direction", "slope_distribution", "transformed_distribution",
     "any_distribution", "special_functions", "error_function", "visible_normals", "lobe_mixture",
     "ggx", "beckmann",
     "beckmann_mixture", "tabulated", "gtr", "std_distribution", "phong", "sheen", "discrete_ggx",

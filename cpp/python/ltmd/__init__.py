@@ -7,6 +7,7 @@ up; tensions are (t11, t12, t22) of T = [[t11, t12], [0, t22]]; (1, 0, 1) is the
 
 from ltmd._ltmd import (
     GGX,
+    MDF_PARAMETERS,
     Beckmann,
     Cancelled,
     Distribution,
@@ -39,6 +40,7 @@ from ltmd._ltmd import (
     tension_matrix,
     threads,
     udim,
+    unit_mdf,
     verify,
     wrinkle,
     write_exr,
@@ -48,6 +50,7 @@ from ltmd.warp import jacobian
 __all__ = [
     "GGX",
     "Beckmann",
+    "MDF_PARAMETERS",
     "Cancelled",
     "Distribution",
     "FileError",
@@ -80,6 +83,7 @@ __all__ = [
     "tension_matrix",
     "threads",
     "udim",
+    "unit_mdf",
     "verify",
     "wrinkle",
     "write_exr",

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 __version__: str
 convention: int
 passes: list[str]
+MDF_PARAMETERS: tuple[str, ...]
 
 Path = str | os.PathLike[str]
 Per = Literal["triangle", "vertex", "corner"]
@@ -226,3 +227,19 @@ class GGX(Distribution):
     def alpha_x(self) -> float: ...
     @property
     def alpha_y(self) -> float: ...
+
+MdfParameter = Literal[
+    "beckmann_alpha",
+    "gauss_m",
+    "ggx_alpha",
+    "blender_roughness",
+    "gtr_alpha",
+    "phong_exponent",
+    "ashikhmin_shirley_n",
+    "schlick_m",
+    "sawicki_n",
+]
+
+def unit_mdf(
+    parameter: MdfParameter, value: float, beta: ArrayLike, gamma: float = 2.0
+) -> _Floats: ...
