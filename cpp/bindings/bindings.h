@@ -59,5 +59,6 @@ void bind_any_distribution(py::module_& module);
 void bind_ggx(py::module_& module);
 void bind_beckmann(py::module_& module);
 void bind_unit_mdf(py::module_& module);
+void bind_tabulated(py::module_& module);
 
 }  // namespace ltmd::python

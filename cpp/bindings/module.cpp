@@ -26,6 +26,7 @@ PYBIND11_MODULE(_ltmd, module) {
     bind_ggx(module);
     bind_beckmann(module);
     bind_unit_mdf(module);
+    bind_tabulated(module);
     bind_texel_coverage(module);
     bind_exr(module);
     bind_sequence_baker(module);

@@ -2,6 +2,7 @@
 """Every distribution that the tests for all of them run on: name -> (distribution, slope scale)."""
 
 import ltmd
+import numpy as np
 
 DISTRIBUTIONS = {
     "GGX(0.01)": (ltmd.GGX(0.01), 0.01),
@@ -11,4 +12,8 @@ DISTRIBUTIONS = {
     "Beckmann(0.05)": (ltmd.Beckmann(0.05), 0.05),
     "Beckmann(0.6)": (ltmd.Beckmann(0.6), 0.6),
     "Beckmann(0.4, 0.1)": (ltmd.Beckmann(0.4, 0.1), 0.2),
+    "Tabulated(two scales)": (
+        ltmd.Tabulated(lambda r: np.exp(-((r / 0.01) ** 2)) / 0.01**2 + 1 / (1 + r**2) ** 2),
+        0.1,
+    ),
 }

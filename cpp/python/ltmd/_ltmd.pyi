@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 import os
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from types import TracebackType
-from typing import Literal, Self
+from typing import Literal, Self, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -243,3 +243,9 @@ MdfParameter = Literal[
 def unit_mdf(
     parameter: MdfParameter, value: float, beta: ArrayLike, gamma: float = 2.0
 ) -> _Floats: ...
+
+class Tabulated(Distribution):
+    @overload
+    def __init__(self, p22_or_r: Callable[[NDArray[np.float64]], NDArray[np.float64]]) -> None: ...
+    @overload
+    def __init__(self, p22_or_r: ArrayLike, p22: ArrayLike) -> None: ...
