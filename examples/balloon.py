@@ -170,19 +170,14 @@ def main():
     obj = gallery.link(bpy.data.objects.new("Balloon", mesh))
     add_animation(obj, rest)
     bake_cloth(obj, add_cloth(obj))
-    bpy.ops.wm.save_as_mainfile(filepath=str(args.out / "balloon.blend"))
-    files = gallery.bake(obj, args, FIRST, LAST, 512)
-    gallery.three_rows(
+    gallery.present(
         obj,
         args,
         "A balloon is inflated, squeezed at the waist and pulled (Blender's cloth simulation)",
         COLUMNS,
-        files,
-        FIRST,
-        LAST,
+        size=512,
         lines=(24, 20),
     )
-    gallery.finish()
 
 
 main()

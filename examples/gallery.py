@@ -39,6 +39,7 @@ def start(name):
     parser.add_argument("--samples", type=int, default=128)
     parser.add_argument("--scale", type=float, default=1.0, help="size of the cells")
     args = parser.parse_args()
+    args.name = name
     args.out = args.out.resolve()
     args.out.mkdir(parents=True, exist_ok=True)
     os.environ["BLENDER_USER_RESOURCES"] = str(args.out / "blender_user")
@@ -251,7 +252,19 @@ def render_row(args, row, frames, words):
     return paths
 
 
-def three_rows(obj, args, title, columns, files, first, last, lines=0):
+def present(obj, args, title, columns, size, lines=0):
+    """Saves the scene, bakes its frames at size x size, renders the sheet's cells, and ends."""
+    import bpy
+
+    scene = bpy.context.scene
+    first, last = scene.frame_start, scene.frame_end
+    bpy.ops.wm.save_as_mainfile(filepath=str(args.out / f"{args.name}.blend"))
+    files = bake(obj, args, first, last, size)
+    three_rows(obj, args, title, columns, files, first, last, lines)
+    finish()
+
+
+def three_rows(obj, args, title, columns, files, first, last, lines):
     """Renders plain, LTMD and measured rows and writes the description of the sheet.
 
     columns: (frame, caption) in the order of the sheet.

@@ -156,18 +156,13 @@ def main():
     # The default folds small UV faces over at island borders.
     subdivision.uv_smooth = "PRESERVE_CORNERS"
     obj.data.materials.append(gallery.paint("Paint", (0.03, 0.2, 0.85), 0.42, metallic=1))
-    bpy.ops.wm.save_as_mainfile(filepath=str(args.out / "suzanne.blend"))
-    files = gallery.bake(obj, args, FIRST, LAST, 1024)
-    gallery.three_rows(
+    gallery.present(
         obj,
         args,
         "Suzanne pulls faces (shape keys, armature, then Subdivision Surface)",
         COLUMNS,
-        files,
-        FIRST,
-        LAST,
+        size=1024,
     )
-    gallery.finish()
 
 
 main()
