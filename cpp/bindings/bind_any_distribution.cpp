@@ -67,46 +67,62 @@ py::array floating(py::handle object, const char* name) {
     return array;
 }
 
-std::pair<py::array, py::array> broadcast(py::handle a, const char* name_a, py::ssize_t size_a,
-                                          py::handle b, const char* name_b, py::ssize_t size_b) {
-    py::array first = floating(a, name_a), second = floating(b, name_b);
-    // What is not an array takes the other's type.
-    const bool free_a = !py::isinstance<py::array>(a), free_b = !py::isinstance<py::array>(b);
-    if (free_a && !free_b) first = first.attr("astype")(second.dtype());
-    if (free_b && !free_a) second = second.attr("astype")(first.dtype());
-    if (!first.dtype().is(second.dtype()) && !first.dtype().equal(second.dtype()))
-        throw py::type_error(std::string(name_a) + " is of " + std::string(py::str(first.dtype())) +
-                             " and " + name_b + " of " + std::string(py::str(second.dtype())) +
-                             "; both must be of one type");
-    const auto check = [](const py::array& array, const char* name, py::ssize_t size) {
-        if (array.ndim() < 1 || array.shape(array.ndim() - 1) != size)
-            throw py::value_error(std::string(name) + " must have shape (..., " +
-                                  std::to_string(size) + "), not " + shape_text(array));
-    };
-    check(first, name_a, size_a);
-    check(second, name_b, size_b);
-    const auto leading = [](const py::array& array) {
-        py::tuple shape(array.ndim() - 1);
-        for (py::ssize_t i = 0; i + 1 < array.ndim(); ++i)
-            shape[static_cast<std::size_t>(i)] = array.shape(i);
+std::vector<py::array> broadcast(const std::vector<Argument>& arguments) {
+    // What is not an array takes the type of those that are.
+    const Argument* typed = nullptr;
+    std::vector<py::array> arrays;
+    for (const Argument& argument : arguments) {
+        arrays.push_back(floating(argument.object, argument.name));
+        if (!typed && py::isinstance<py::array>(argument.object)) typed = &argument;
+    }
+    const auto leading = [](const py::array& array, py::ssize_t size) {
+        const py::ssize_t axes = array.ndim() - (size > 0);
+        py::tuple shape(axes);
+        for (py::ssize_t i = 0; i < axes; ++i) shape[static_cast<std::size_t>(i)] = array.shape(i);
         return shape;
     };
-    const py::tuple lead_a = leading(first), lead_b = leading(second);
-    if (lead_a.equal(lead_b)) return {first, second};
     const auto numpy = py::module_::import("numpy");
+    py::list shapes;
+    for (std::size_t i = 0; i < arrays.size(); ++i) {
+        const auto& [object, name, size] = arguments[i];
+        py::array& array = arrays[i];
+        if (typed) {
+            const py::dtype wanted = floating(typed->object, typed->name).dtype();
+            if (!py::isinstance<py::array>(object)) array = array.attr("astype")(wanted);
+            if (!array.dtype().equal(wanted))
+                throw py::type_error(std::string(typed->name) + " is of " +
+                                     std::string(py::str(wanted)) + " and " + name + " of " +
+                                     std::string(py::str(array.dtype())) +
+                                     "; both must be of one type");
+        }
+        if (size > 0 && (array.ndim() < 1 || array.shape(array.ndim() - 1) != size))
+            throw py::value_error(std::string(name) + " must have shape (..., " +
+                                  std::to_string(size) + "), not " + shape_text(array));
+        shapes.append(leading(array, size));
+    }
     py::tuple shape;
     try {
-        shape = numpy.attr("broadcast_shapes")(lead_a, lead_b);
+        shape = numpy.attr("broadcast_shapes")(*shapes);
     } catch (py::error_already_set&) {
-        throw py::value_error(std::string(name_a) + " has shape " + shape_text(first) + " and " +
-                              name_b + " " + shape_text(second) +
-                              "; their leading axes do not fit together");
+        std::string text;
+        for (std::size_t i = 0; i < arrays.size(); ++i)
+            text += (i == 0 ? "" : " and ") + std::string(arguments[i].name) +
+                    (i == 0 ? " has shape " : " ") + shape_text(arrays[i]);
+        throw py::value_error(text + "; their leading axes do not fit together");
     }
-    const auto spread = [&](const py::array& array, py::ssize_t size) -> py::array {
-        return numpy.attr("ascontiguousarray")(
-            numpy.attr("broadcast_to")(array, shape + py::make_tuple(size)));
-    };
-    return {spread(first, size_a), spread(second, size_b)};
+    for (std::size_t i = 0; i < arrays.size(); ++i) {
+        const py::ssize_t size = arguments[i].size;
+        if (leading(arrays[i], size).equal(shape)) continue;
+        const py::tuple full = size > 0 ? py::tuple(shape + py::make_tuple(size)) : shape;
+        arrays[i] = numpy.attr("ascontiguousarray")(numpy.attr("broadcast_to")(arrays[i], full));
+    }
+    return arrays;
+}
+
+std::pair<py::array, py::array> broadcast(py::handle a, const char* name_a, py::ssize_t size_a,
+                                          py::handle b, const char* name_b, py::ssize_t size_b) {
+    const auto arrays = broadcast({{a, name_a, size_a}, {b, name_b, size_b}});
+    return {arrays[0], arrays[1]};
 }
 
 Matrix2 parse_surface_matrix(py::handle m) {

@@ -60,5 +60,9 @@ void bind_ggx(py::module_& module);
 void bind_beckmann(py::module_& module);
 void bind_unit_mdf(py::module_& module);
 void bind_tabulated(py::module_& module);
+void bind_fresnel(py::module_& module);
+void bind_masking(py::module_& module);
+void bind_v_cavity(py::module_& module);
+void bind_microfacet_brdf(py::module_& module);
 
 }  // namespace ltmd::python

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <utility>
+#include <vector>
 
 #include "arrays.h"
 #include "ltmd/any_distribution.h"
@@ -58,8 +59,16 @@ Array<Real> for_each_item(const Array<Real>& from, const Function& function) {
     return out;
 }
 
-/// Two arrays of one dtype with their leading axes broadcast to one shape. Throws TypeError for two
+/// An argument of a function over arrays: float[..., size], or float[...] if size is 0.
+struct Argument {
+    py::handle object;
+    const char* name;
+    py::ssize_t size;
+};
+
+/// Arrays of one dtype with their leading axes broadcast to one shape. Throws TypeError for two
 /// dtypes, ValueError for shapes that do not fit.
+std::vector<py::array> broadcast(const std::vector<Argument>& arguments);
 std::pair<py::array, py::array> broadcast(py::handle a, const char* name_a, py::ssize_t size_a,
                                           py::handle b, const char* name_b, py::ssize_t size_b);
 

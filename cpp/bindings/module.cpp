@@ -27,6 +27,10 @@ PYBIND11_MODULE(_ltmd, module) {
     bind_beckmann(module);
     bind_unit_mdf(module);
     bind_tabulated(module);
+    bind_fresnel(module);
+    bind_masking(module);
+    bind_v_cavity(module);
+    bind_microfacet_brdf(module);
     bind_texel_coverage(module);
     bind_exr(module);
     bind_sequence_baker(module);

@@ -12,7 +12,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 
 # In each branch a header may include those before it. Private headers of cpp/src have their place
 # among the public ones.
-BASE = ["export", "version", "errors", "threads", "parallel", "text", "utf8_path"]
+BASE = ["export", "version", "errors", "threads", "parallel", "for_items", "text", "utf8_path"]
 GEOMETRY = [
     "mesh_view", "vector_math", "tangent_frame", "rest_state", "rest_state_data", "tension",
     "deformation_tensor", "texel_coverage", "bake",
@@ -24,7 +24,8 @@ DISTRIBUTION = [
     "ggx", "beckmann",
     "beckmann_mixture", "tabulated", "gtr", "std_distribution", "phong", "sheen", "discrete_ggx",
     "ashikhmin_shirley", "gauss", "schlick_mdf", "sawicki_ds", "ellipsoid_ndf",
-    "non_centred_distribution", "fresnel", "masking", "v_cavity", "microfacet_brdf",
+    "non_centred_distribution", "fresnel", "beta_function", "v_cavity", "masking",
+    "microfacet_brdf",
     "diffuse_microfacets", "multiple_scattering", "heightfield", "mdf_conversion", "major_axis",
     "line_integral", "environment",
 ]  # fmt: skip

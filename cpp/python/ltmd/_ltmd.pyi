@@ -249,3 +249,46 @@ class Tabulated(Distribution):
     def __init__(self, p22_or_r: Callable[[NDArray[np.float64]], NDArray[np.float64]]) -> None: ...
     @overload
     def __init__(self, p22_or_r: ArrayLike, p22: ArrayLike) -> None: ...
+
+MaskingModel = Literal[
+    "separable",
+    "height_correlated",
+    "direction_correlated",
+    "height_direction_correlated",
+    "v_cavity",
+    "implicit",
+    "schlick_smith",
+    "kelemen",
+]
+MASKING_MODELS: tuple[MaskingModel, ...]
+
+def fresnel_dielectric(cosine: ArrayLike, eta: ArrayLike) -> _Floats: ...
+def fresnel_conductor(cosine: ArrayLike, eta: ArrayLike, k: ArrayLike) -> _Floats: ...
+def fresnel_schlick(cosine: ArrayLike, f0: ArrayLike) -> _Floats: ...
+def fresnel_f82(cosine: ArrayLike, f0: ArrayLike, tint: ArrayLike) -> _Floats: ...
+def G1(
+    d: Distribution, v: ArrayLike, m: ArrayLike, model: MaskingModel = "height_correlated"
+) -> _Floats: ...
+def G2(
+    d: Distribution,
+    wi: ArrayLike,
+    wo: ArrayLike,
+    m: ArrayLike | None = None,
+    model: MaskingModel = "height_correlated",
+) -> _Floats: ...
+def v_cavity_pdf_visible(d: Distribution, v: ArrayLike, m: ArrayLike) -> _Floats: ...
+def v_cavity_sample_visible(d: Distribution, v: ArrayLike, u: ArrayLike) -> _Floats: ...
+def brdf(
+    d: Distribution,
+    wi: ArrayLike,
+    wo: ArrayLike,
+    fresnel: ArrayLike | Callable[[_Floats], ArrayLike] | None = None,
+    model: MaskingModel = "height_correlated",
+) -> _Floats: ...
+def btdf(
+    d: Distribution,
+    wi: ArrayLike,
+    wo: ArrayLike,
+    eta: float,
+    model: MaskingModel = "height_correlated",
+) -> _Floats: ...
