@@ -64,5 +64,6 @@ void bind_fresnel(py::module_& module);
 void bind_masking(py::module_& module);
 void bind_v_cavity(py::module_& module);
 void bind_microfacet_brdf(py::module_& module);
+void bind_gtr(py::module_& module);
 
 }  // namespace ltmd::python

@@ -31,6 +31,7 @@ PYBIND11_MODULE(_ltmd, module) {
     bind_masking(module);
     bind_v_cavity(module);
     bind_microfacet_brdf(module);
+    bind_gtr(module);
     bind_texel_coverage(module);
     bind_exr(module);
     bind_sequence_baker(module);
