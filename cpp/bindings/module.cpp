@@ -32,6 +32,8 @@ PYBIND11_MODULE(_ltmd, module) {
     bind_v_cavity(module);
     bind_microfacet_brdf(module);
     bind_gtr(module);
+    bind_std_distribution(module);
+    bind_phong(module);
     bind_texel_coverage(module);
     bind_exr(module);
     bind_sequence_baker(module);

@@ -20,8 +20,8 @@ GEOMETRY = [
 DISTRIBUTION = [
     "require_range", "unit_mdf", "unit_form",
     "matrix2", "direction", "slope_distribution", "transformed_distribution",
-    "any_distribution", "special_functions", "error_function", "visible_normals",
-    "gauss_quadrature", "lobe_normals", "ggx", "beckmann", "lobe_mixture",
+    "any_distribution", "special_functions", "elementary", "error_function", "visible_slope",
+    "visible_normals", "gauss_quadrature", "lobe_normals", "ggx", "beckmann", "lobe_mixture",
     "beckmann_mixture", "tabulated", "gtr", "std_distribution", "phong", "sheen", "discrete_ggx",
     "ashikhmin_shirley", "gauss", "schlick_mdf", "sawicki_ds", "ellipsoid_ndf",
     "non_centred_distribution", "fresnel", "beta_function", "v_cavity", "masking",
