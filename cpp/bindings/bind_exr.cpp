@@ -51,10 +51,13 @@ void bind_exr(py::module_& module) {
            const std::optional<std::vector<std::string>>& channels, const std::string& compression,
            bool half, std::optional<int> mantissa_bits, const py::dict& metadata) {
             const Precision precision = parse_precision(half, mantissa_bits);
-            auto image = require<float>(pixels, "pixels", {-1, -1, -1});
+            const auto image = require<float>(pixels, "pixels", {-1, -1, -1});
             std::vector<std::string> names;
             if (channels) {
                 names = *channels;
+                if (static_cast<py::ssize_t>(names.size()) != image.shape(2))
+                    throw py::value_error(std::to_string(names.size()) + " channel names for " +
+                                          std::to_string(image.shape(2)) + " channels");
             } else if (image.shape(2) == 1) {
                 names = {"Y"};
             } else if (image.shape(2) == 3 || image.shape(2) == 4) {
@@ -62,17 +65,6 @@ void bind_exr(py::module_& module) {
             } else {
                 throw py::value_error("pixels have " + std::to_string(image.shape(2)) +
                                       " channels: name them with channels=[...]");
-            }
-            if (!channels && image.shape(2) == 3) {
-                Array<float> with_alpha({image.shape(0), image.shape(1), py::ssize_t{4}});
-                const float* from = image.data();
-                float* to = with_alpha.mutable_data();
-                for (py::ssize_t i = 0; i < image.shape(0) * image.shape(1);
-                     ++i, from += 3, to += 4) {
-                    std::copy_n(from, 3, to);
-                    to[3] = 1;
-                }
-                image = with_alpha;
             }
             const std::string file = parse_path(path);
             const Compression codec = parse_compression(compression);

@@ -272,24 +272,39 @@ Imath::half to_half(float value) {
     return Imath::half(std::isfinite(value) ? std::clamp(value, -largest, largest) : value);
 }
 
+/// Which channels the pixels of a row have; the last one of `names` may be left out.
+struct Layout {
+    std::span<const std::string> names;
+    std::size_t width, channels;
+
+    std::size_t row() const { return width * channels; }
+};
+
+/// `ones`: a row of the channel that is left out.
 template <class Item>
 void insert_slices(Imf::FrameBuffer& buffer, Imf::PixelType type, const Item* pixels,
-                   std::span<const std::string> channels, std::size_t row, int first_row) {
-    const std::size_t stride = row * sizeof(Item);
-    for (std::size_t k = 0; k < channels.size(); ++k) {
-        // OpenEXR's slices are not const, but writing only reads them; their base is row 0.
+                   const Layout& layout, const std::vector<Item>& ones, int first_row) {
+    const std::size_t stride = layout.row() * sizeof(Item);
+    // OpenEXR's slices are not const, but writing only reads them; their base is row 0.
+    for (std::size_t k = 0; k < layout.channels; ++k) {
         auto* first = reinterpret_cast<char*>(const_cast<Item*>(pixels + k)) -
                       static_cast<std::ptrdiff_t>(stride) * first_row;
-        buffer.insert(channels[k], Imf::Slice(type, first, channels.size() * sizeof(Item), stride));
+        buffer.insert(layout.names[k],
+                      Imf::Slice(type, first, layout.channels * sizeof(Item), stride));
     }
+    if (layout.channels < layout.names.size())
+        buffer.insert(layout.names.back(),
+                      Imf::Slice(type, reinterpret_cast<char*>(const_cast<Item*>(ones.data())),
+                                 sizeof(Item), 0));
 }
 
 /// Rows at a time, so that rounding needs little memory.
 template <class Item, class Convert>
 void write_converted(Imf::OutputFile& file, Imf::PixelType type, std::span<const float> pixels,
-                     std::size_t row, std::span<const std::string> channels,
-                     const Convert& convert) {
+                     const Layout& layout, const Convert& convert) {
     constexpr int rows_at_a_time = 256;
+    const std::size_t row = layout.row();
+    const std::vector<Item> ones(layout.width, Item(1.0f));
     const int height = static_cast<int>(pixels.size() / row);
     std::vector<Item> strip;
     for (int first = 0; first < height; first += rows_at_a_time) {
@@ -300,26 +315,27 @@ void write_converted(Imf::OutputFile& file, Imf::PixelType type, std::span<const
             for (std::size_t i = begin; i < end; ++i) strip[i] = convert(part[i]);
         });
         Imf::FrameBuffer buffer;
-        insert_slices(buffer, type, strip.data(), channels, row, first);
+        insert_slices(buffer, type, strip.data(), layout, ones, first);
         file.setFrameBuffer(buffer);
         file.writePixels(rows);
     }
 }
 
-void write_rows(Imf::OutputFile& file, std::span<const float> pixels, std::size_t row,
-                std::span<const std::string> channels, const Precision& precision) {
+void write_rows(Imf::OutputFile& file, std::span<const float> pixels, const Layout& layout,
+                const Precision& precision) {
     const int bits = precision.mantissa_bits;
     if (precision.half)
-        write_converted<Imath::half>(file, Imf::HALF, pixels, row, channels,
+        write_converted<Imath::half>(file, Imf::HALF, pixels, layout,
                                      [&](float v) { return to_half(rounded(v, bits)); });
     else if (bits < full_mantissa)
-        write_converted<float>(file, Imf::FLOAT, pixels, row, channels,
+        write_converted<float>(file, Imf::FLOAT, pixels, layout,
                                [&](float v) { return rounded(v, bits); });
     else {
+        const std::vector<float> ones(layout.width, 1.0f);
         Imf::FrameBuffer buffer;
-        insert_slices(buffer, Imf::FLOAT, pixels.data(), channels, row, 0);
+        insert_slices(buffer, Imf::FLOAT, pixels.data(), layout, ones, 0);
         file.setFrameBuffer(buffer);
-        file.writePixels(static_cast<int>(pixels.size() / row));
+        file.writePixels(static_cast<int>(pixels.size() / layout.row()));
     }
 }
 
@@ -346,8 +362,10 @@ void write_exr(const std::string& path, std::span<const float> pixels, int width
                            std::to_string(height) + " is outside 1 to " + std::to_string(max_size) +
                            " pixels a side");
     if (channels.empty()) throw InvalidInput("a picture needs at least one channel name");
-    const std::size_t row = static_cast<std::size_t>(width) * channels.size();
-    if (pixels.size() != row * static_cast<std::size_t>(height))
+    Layout layout{channels, static_cast<std::size_t>(width), channels.size()};
+    const std::size_t texels = layout.width * static_cast<std::size_t>(height);
+    if (channels.size() > 1 && pixels.size() == texels * (channels.size() - 1)) --layout.channels;
+    if (pixels.size() != texels * layout.channels)
         throw InvalidInput(std::to_string(pixels.size()) + " pixel values; expected " +
                            std::to_string(height) + " x " + std::to_string(width) + " x " +
                            std::to_string(channels.size()));
@@ -357,7 +375,7 @@ void write_exr(const std::string& path, std::span<const float> pixels, int width
     try {
         FileStream stream(temporary, path);
         Imf::OutputFile file(stream, header, compression == Compression::none ? 0 : file_threads());
-        write_rows(file, pixels, row, channels, precision);
+        write_rows(file, pixels, layout, precision);
     } catch (const std::exception& exception) {
         fail(path, std::string("could not be written (") + exception.what() + ")");
     }

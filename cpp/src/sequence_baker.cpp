@@ -178,6 +178,7 @@ struct SequenceBaker::State {
             lock.unlock();
             std::exception_ptr problem;
             try {
+                // Where the pass has three channels, write_exr() adds the alpha.
                 static const std::vector<std::string> channels = {"R", "G", "B", "A"};
                 write_exr(file.path, file.frame->pixels.at(file.pass), coverage.width(),
                           coverage.height(), channels, options.compression, file.metadata,
@@ -212,13 +213,13 @@ struct SequenceBaker::State {
         compute_pass(pass, tensions, options.lobe, values);
         std::vector<float> background;
         compute_pass(pass, {&identity_tension, 1}, options.lobe, background);
-        pixels.resize(coverage.texels().size() * 4);
+        pixels.resize(coverage.texels().size() * static_cast<std::size_t>(channels));
         if (options.per == Per::triangle) {
-            bake_flat(coverage, values, channels, background, 4, pixels);
+            bake_flat(coverage, values, channels, background, channels, pixels);
             return;
         }
         if (options.per == Per::corner) {
-            bake(coverage, values, channels, background, 4, pixels);
+            bake(coverage, values, channels, background, channels, pixels);
             return;
         }
         const auto count = static_cast<std::size_t>(channels);
@@ -226,7 +227,7 @@ struct SequenceBaker::State {
         for (std::size_t c = 0; c < corner_vert.size(); ++c)
             std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(corner_vert[c]) * channels,
                         channels, corners.begin() + static_cast<std::ptrdiff_t>(c * count));
-        bake(coverage, corners, channels, background, 4, pixels);
+        bake(coverage, corners, channels, background, channels, pixels);
     }
 
     void frame(const RestState& frame_rest, std::span<const Vec3f> deformed,

@@ -124,6 +124,24 @@ TEST(Exr, OnePixelAndOddChannels) {
     EXPECT_EQ(image.pixels, (std::vector<float>{5, 2, 3, 4, 1}));
 }
 
+TEST(Exr, AChannelThatIsLeftOutIsOne) {
+    const TemporaryFolder folder;
+    constexpr int width = 5, height = 300;
+    const std::vector<float> pixels = noise(width * height * 3);
+    for (const Precision& precision :
+         {Precision{}, Precision{.half = true}, Precision{.mantissa_bits = 8}}) {
+        write_exr(folder / "three.exr", pixels, width, height, rgba, Compression::zip, {},
+                  precision);
+        std::vector<float> four;
+        for (std::size_t i = 0; i < pixels.size(); ++i) {
+            four.push_back(pixels[i]);
+            if (i % 3 == 2) four.push_back(1);
+        }
+        write_exr(folder / "four.exr", four, width, height, rgba, Compression::zip, {}, precision);
+        EXPECT_EQ(read_exr(folder / "three.exr").pixels, read_exr(folder / "four.exr").pixels);
+    }
+}
+
 TEST(Exr, KeepsMetadata) {
     const TemporaryFolder folder;
     const Metadata metadata = {{"ltmd:convention", "1"},

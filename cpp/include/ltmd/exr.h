@@ -49,7 +49,8 @@ struct ExrImage {
 };
 
 /// Writes `pixels` ([height * width * channels.size()], row 0 = top), at full precision as they
-/// are. Rounding keeps finite values finite (the largest number stands for what exceeds it) and the
+/// are. Where the pixels have one channel fewer than are named, the last one is 1: a finite alpha.
+/// Rounding keeps finite values finite (the largest number stands for what exceeds it) and the
 /// others as they are. The file appears at `path` only when it is complete: it is
 /// written beside it under a temporary name (`.ltmd-*.tmp`) and renamed. Throws FileError (the old
 /// file, if any, is unharmed and the temporary one removed) and InvalidInput (sizes outside 1 to
