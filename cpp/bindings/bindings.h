@@ -56,6 +56,8 @@ void bind_sequence_baker(py::module_& module);
 void bind_verify(py::module_& module);
 void bind_threads(py::module_& module);
 void bind_any_distribution(py::module_& module);
+void bind_ellipsoid_ndf(py::module_& module);
+void bind_non_centred_distribution(py::module_& module);
 void bind_ggx(py::module_& module);
 void bind_beckmann(py::module_& module);
 void bind_unit_mdf(py::module_& module);

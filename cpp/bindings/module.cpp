@@ -23,6 +23,8 @@ PYBIND11_MODULE(_ltmd, module) {
     bind_deformation_tensor(module);
     bind_lobe_parameters(module);
     bind_any_distribution(module);
+    bind_ellipsoid_ndf(module);
+    bind_non_centred_distribution(module);
     bind_ggx(module);
     bind_beckmann(module);
     bind_unit_mdf(module);

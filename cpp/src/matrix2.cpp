@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "ltmd/errors.h"
+#include "ltmd/require_range.h"
 #include "text.h"
 
 namespace ltmd::inline v0 {
@@ -23,6 +24,20 @@ Matrix2 stretch_matrix(double s) {
         throw InvalidInput(text("stretch is ", s, "; it must be between -1 and 1"));
     const double along = s < 0 ? 1 + s : 1 / (1 - s);
     return {along, 0, 0, 1 / along};
+}
+
+Matrix2 correlated_stretch(double alpha_x, double alpha_y, double r_xy) {
+    require_range("alpha_x", alpha_x, 1e-6, 1e6);
+    require_range("alpha_y", alpha_y, 1e-6, 1e6);
+    if (!(r_xy > -1 && r_xy < 1))
+        throw InvalidInput(text("r_xy is ", r_xy, "; it must be between -1 and 1"));
+    const double rest = (1 - r_xy) * (1 + r_xy);
+    const double xx = 1 / (alpha_x * alpha_x * rest), yy = 1 / (alpha_y * alpha_y * rest);
+    const double xy = -r_xy / (alpha_x * alpha_y * rest);
+    // The root of a symmetric 2x2 matrix: (Q + |Q|^(1/2) I) / (tr Q + 2 |Q|^(1/2))^(1/2).
+    const double root = 1 / (alpha_x * alpha_y * std::sqrt(rest));
+    const double scale = 1 / std::sqrt(xx + yy + 2 * root);
+    return {(xx + root) * scale, xy * scale, xy * scale, (yy + root) * scale};
 }
 
 Matrix2 material_matrix(double stretch, double rotation, double shear) {

@@ -5,6 +5,8 @@ import ltmd
 import numpy as np
 
 DISTRIBUTIONS = {
+    "EllipsoidNDF turned": (ltmd.EllipsoidNDF.from_angles(0.6, 0.15, theta_z=0.4), 0.3),
+    "EllipsoidNDF sheared": (ltmd.EllipsoidNDF([[0.4, 0.3, 0], [0, 0.2, 0], [0, 0, 1]]), 0.3),
     "GGX(0.01)": (ltmd.GGX(0.01), 0.01),
     "GGX(0.3)": (ltmd.GGX(0.3), 0.3),
     "GGX(1)": (ltmd.GGX(1.0), 1.0),

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Judges for distributions: quadrature over slopes, chi-squared tests, and grids to test on.
 
-Integrals run over the base's slopes t = M^T s in polar form, where a distribution under M is as
-smooth as its base; the integrand is the distribution's own D at the normal of s = M^-T t.
+Integrals run over the base's slopes t = M^T s in polar form about a centre, where a distribution
+under M is as smooth as its base; the integrand is the distribution's own D at the normal of
+s = M^-T t.
 """
 
 import ltmd
@@ -40,16 +41,19 @@ def panels(edges, order):
     )
 
 
-def facing_area(d, v, scale, M=None, order=12, azimuths=96):
+def facing_area(d, v, scale, M=None, centre=(0, 0), order=12, azimuths=96):
     """The integral of D(m) max(0, v.m) over normals, of a distribution that has been transformed by
-    M; v need not be of length 1. `scale` is about the slope where the base's P22 halves."""
+    M; v need not be of length 1. `scale` is about the distance from `centre`, the base's mean
+    slope, where its P22 halves."""
     M = np.eye(2) if M is None else M
     w = np.append(np.linalg.solve(M, v[:2]), v[2])
+    w[2] -= w[:2] @ centre
     across = np.hypot(w[0], w[1])
     edges = np.log(scale) + np.linspace(-12, 18, 61)
     if across > 0:
-        # From the radius w_z / |w_xy| on, some azimuths face away; the border starts like a root.
-        kink = np.log(w[2] / across)
+        # From the radius w_z / |w_xy| on, some azimuths face away, or for w_z < 0 some face; the
+        # border starts like a root.
+        kink = np.log(abs(w[2]) / across)
         near = np.outer([-1, 1], 0.5 ** np.arange(1, 14)).ravel()
         edges = np.unique(np.concatenate([edges, kink + near, [kink]]))
     t, weight_t = panels(edges, order)
@@ -60,7 +64,7 @@ def facing_area(d, v, scale, M=None, order=12, azimuths=96):
     u, weight_u = panels(np.linspace(0, 1, 5), azimuths // 4)
     phi = np.arctan2(w[1], w[0]) + start[:, None] + u * (2 * np.pi - 2 * start)[:, None]
     base_slopes = radius[:, None, None] * np.stack([np.cos(phi), np.sin(phi)], axis=-1)
-    m = normals(base_slopes @ np.linalg.inv(M))
+    m = normals((base_slopes + centre) @ np.linalg.inv(M))
     # d slope = radius^2 dt dphi / |det M|; D dm = P22 / cos d slope.
     values = d.D(m) * m[..., 2] ** 3 * np.maximum(0, m @ v)
     per_radius = values @ weight_u * (2 * np.pi - 2 * start)
@@ -73,12 +77,14 @@ def furnace(d, v, scale, M=None, **options):
     return facing_area(d, v, scale, M, **options) * d.G1(v) / v[2]
 
 
-def chi_squared(normal_samples, pdf, scale, M=None, radial=20, azimuthal=32, order=8):
+def chi_squared(
+    normal_samples, pdf, scale, M=None, centre=(0, 0), radial=20, azimuthal=32, order=8
+):
     """The p-value of samples against a density per steradian, pdf(m)."""
     M = np.eye(2) if M is None else M
     count = len(normal_samples)
     with np.errstate(divide="ignore"):
-        base = -(normal_samples[:, :2] / normal_samples[:, 2:]) @ M
+        base = -(normal_samples[:, :2] / normal_samples[:, 2:]) @ M - centre
     r2 = np.sum(base**2, axis=1) / scale**2
     q = 1 / (1 + r2)
     phi = np.arctan2(base[:, 1], base[:, 0]) % (2 * np.pi)
@@ -94,7 +100,7 @@ def chi_squared(normal_samples, pdf, scale, M=None, radial=20, azimuthal=32, ord
         qs, q_weights = panels(edges, order)
         r = scale * np.sqrt((1 - qs) / qs)
         t = r[:, None, None] * np.stack([np.cos(phis), np.sin(phis)], axis=-1)
-        m = normals(t @ np.linalg.inv(M))
+        m = normals((t + centre) @ np.linalg.inv(M))
         density = pdf(m) * m[..., 2] ** 3 / abs(np.linalg.det(M))
         density = density * (scale**2 / 2 / qs**2)[:, None]
         cells = (density * phi_weights).reshape(len(qs), azimuthal, order).sum(axis=2)

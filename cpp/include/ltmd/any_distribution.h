@@ -107,7 +107,8 @@ private:
             for (std::size_t i = 0; i < n; ++i) out[i] = distribution.pdf_visible(v[i], m[i]);
         }
         AnyDistribution transformed(const Matrix2& m) const override {
-            return AnyDistribution(ltmd::transformed(distribution, m));
+            using ltmd::transformed;  // beside a distribution's own
+            return AnyDistribution(transformed(distribution, m));
         }
         Distribution distribution;
     };

@@ -35,6 +35,12 @@ LTMD_API Matrix2 rotation_matrix(double angle);
 /// (microsurface-transformations, eq. 31). Throws InvalidInput unless -1 < s < 1.
 LTMD_API Matrix2 stretch_matrix(double s);
 
+/// The symmetric positive definite M under which an isotropic distribution of slope scale 1 gets
+/// scales alpha_x and alpha_y with correlation r_xy: M = Q^(1/2), Q^-1 = [[alpha_x^2, r_xy alpha_x
+/// alpha_y], [., alpha_y^2]] (masking-shadowing, eq. 88). Throws InvalidInput unless the alphas are
+/// in [1e-6, 1e6] and -1 < r_xy < 1.
+LTMD_API Matrix2 correlated_stretch(double alpha_x, double alpha_y, double r_xy);
+
 /// The material's anisotropy M0 = Rot(rotation) [[1, shear], [0, 1]] M_stretch, rotation in radians
 /// counter-clockwise from U. Throws InvalidInput unless -1 < stretch < 1 and all are finite.
 LTMD_API Matrix2 material_matrix(double stretch, double rotation, double shear);
