@@ -69,5 +69,6 @@ void bind_microfacet_brdf(py::module_& module);
 void bind_gtr(py::module_& module);
 void bind_std_distribution(py::module_& module);
 void bind_phong(py::module_& module);
+void bind_mdf_conversion(py::module_& module);
 
 }  // namespace ltmd::python

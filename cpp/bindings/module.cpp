@@ -36,6 +36,7 @@ PYBIND11_MODULE(_ltmd, module) {
     bind_gtr(module);
     bind_std_distribution(module);
     bind_phong(module);
+    bind_mdf_conversion(module);
     bind_texel_coverage(module);
     bind_exr(module);
     bind_sequence_baker(module);

@@ -18,5 +18,6 @@ struct Command {
 Command add_tension(CLI::App& app);
 Command add_verify(CLI::App& app);
 Command add_info(CLI::App& app);
+Command add_convert(CLI::App& app);
 
 }  // namespace ltmd::cli

@@ -21,7 +21,8 @@ int failed(int code, const std::string& sentence) {
 
 int main(int argc, char** argv) {
     using namespace ltmd::cli;
-    CLI::App app("Measures how a mesh deforms, and bakes it to EXR textures.", "ltmd");
+    CLI::App app("Measures how a mesh deforms, and bakes it to EXR textures; converts roughness.",
+                 "ltmd");
     app.set_version_flag("--version", "ltmd " + std::to_string(LTMD_VERSION_MAJOR) + "." +
                                           std::to_string(LTMD_VERSION_MINOR) + "." +
                                           std::to_string(LTMD_VERSION_PATCH));
@@ -29,7 +30,7 @@ int main(int argc, char** argv) {
         "Exit codes: 0 done, 1 problems found, 2 wrong arguments, 3 an input that cannot be used, "
         "4 a file\ncould not be written, 130 interrupted (files already written are whole).");
     app.require_subcommand(1);
-    const Command commands[] = {add_tension(app), add_verify(app), add_info(app)};
+    const Command commands[] = {add_tension(app), add_verify(app), add_info(app), add_convert(app)};
     try {
         app.parse(argc, argv);
         for (const Command& command : commands)

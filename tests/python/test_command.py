@@ -4,6 +4,7 @@
 import dataclasses
 import os
 import pathlib
+import re
 import signal
 import subprocess
 import time
@@ -268,7 +269,7 @@ def test_info(tmp_path, tube):
 def test_help_and_version():
     assert run("--version").stdout.strip() == f"ltmd {ltmd.__version__}"
     text = run("--help").stdout
-    for command in ("tension", "verify", "info"):
+    for command in ("tension", "verify", "info", "convert"):
         assert command in text
         assert run(command, "--help").stdout
     assert "Exit codes" in text
@@ -479,3 +480,42 @@ def test_an_interrupt_leaves_whole_files(tmp_path, number):
     for path in files:
         assert path.suffix == ".exr"
         assert ltmd.read_exr(path).shape == (512, 512, 4)
+
+
+def converted(*arguments):
+    return [float(line) for line in run("convert", *arguments).stdout.splitlines()]
+
+
+def test_convert():
+    phong, ggx = "phong_exponent", "ggx_alpha"
+    assert converted(phong, 120, "--to", ggx) == pytest.approx(
+        [ltmd.convert(120, phong, ggx)], rel=1e-6
+    )
+    values = [10, 120, 1e5]
+    for method in ("rmse", "half_angle", "closed_form"):
+        expected = ltmd.convert(values, phong, ggx, method)
+        found = converted(phong, *values, "--to", ggx, "--method", method)
+        assert found == pytest.approx(expected, rel=1e-6)
+    found = converted("gtr_alpha", 0.2, "--to", ggx, "--gamma", 3)
+    assert found == pytest.approx([ltmd.convert(0.2, "gtr_alpha", ggx, gamma=3)], rel=1e-6)
+    listed = run("convert", "--list").stdout
+    assert re.findall(r"^\w+", listed, re.MULTILINE) == list(ltmd.MDF_PARAMETERS)
+
+
+@pytest.mark.parametrize(
+    "arguments, said",
+    [
+        ([], "--to"),
+        (["phong_exponent", 120], "--to"),
+        (["phong_exponent", "--to", "ggx_alpha"], "values"),
+        (["phong_exponent", "many", "--to", "ggx_alpha"], "many"),
+        (["phong", 120, "--to", "ggx_alpha"], "beckmann_alpha, gauss_m"),
+        (["phong_exponent", 120, "--to", "alpha"], "beckmann_alpha, gauss_m"),
+        (["phong_exponent", 120, "--to", "ggx_alpha", "--method", "best"], "rmse, half_angle"),
+        (["ggx_alpha", 0.2, 0.95, "--to", "phong_exponent"], "0.95 at index 1"),
+        (["gtr_alpha", 0.2, "--to", "ggx_alpha", "--gamma", 0], "gamma is 0"),
+    ],
+)
+def test_convert_refuses_in_words(arguments, said):
+    done = run("convert", *arguments, code=USAGE)
+    assert said in done.stderr and not done.stdout

@@ -11,6 +11,7 @@ __version__: str
 convention: int
 passes: list[str]
 MDF_PARAMETERS: tuple[str, ...]
+MDF_METHODS: tuple[str, ...]
 
 Path = str | os.PathLike[str]
 Per = Literal["triangle", "vertex", "corner"]
@@ -366,3 +367,29 @@ class GTR(Distribution):
     def gamma(self) -> float: ...
     @property
     def masking(self) -> str: ...
+
+MdfMethod = Literal["rmse", "half_angle", "closed_form", "ward"]
+
+@overload
+def convert(
+    value: float,
+    source: MdfParameter,
+    target: MdfParameter,
+    method: MdfMethod = "rmse",
+    gamma: float = 2.0,
+) -> float: ...
+@overload
+def convert(
+    value: ArrayLike,
+    source: MdfParameter,
+    target: MdfParameter,
+    method: MdfMethod = "rmse",
+    gamma: float = 2.0,
+) -> _Floats: ...
+def fit_mdf(
+    value: float,
+    source: MdfParameter,
+    target: MdfParameter,
+    largest_angle: float,
+    gamma: float = 2.0,
+) -> tuple[float, float]: ...
