@@ -437,6 +437,8 @@ def test_reflected_directions(name, rng):
 
     up = out[:, 2] > 0
     brdf = d.D(m) * d.G1(v) * d.G1(out) / (4 * v[2] * np.abs(out[:, 2]))  # eq. 4
+    smith = ltmd.brdf(d, np.broadcast_to(v, out.shape).copy(), out, model="separable")
+    np.testing.assert_allclose(smith[up], brdf[up], rtol=1e-6)
     weight = (brdf * np.abs(out[:, 2]) / density(out))[up]  # eq. 49
     assert np.all(weight <= d.G1(out[up]) * (1 + 1e-6))
     expected_weight = d.G1(v) * d.G1(out[up]) / v[2] * d.lune_area(v, N) / d.ellipsoid_area(N)
