@@ -83,14 +83,15 @@ def chi_squared(
     """The p-value of samples against a density per steradian, pdf(m)."""
     M = np.eye(2) if M is None else M
     count = len(normal_samples)
+    x, y, z = normal_samples.T
     with np.errstate(divide="ignore"):
-        base = -(normal_samples[:, :2] / normal_samples[:, 2:]) @ M - centre
-    r2 = np.sum(base**2, axis=1) / scale**2
-    q = 1 / (1 + r2)
-    phi = np.arctan2(base[:, 1], base[:, 0]) % (2 * np.pi)
-    observed, _, _ = np.histogram2d(
-        q, phi, bins=(radial, azimuthal), range=((0, 1), (0, 2 * np.pi))
-    )
+        base_x = -(x * M[0, 0] + y * M[1, 0]) / z - centre[0]
+        base_y = -(x * M[0, 1] + y * M[1, 1]) / z - centre[1]
+    q = scale**2 / (scale**2 + base_x**2 + base_y**2)
+    phi = np.arctan2(base_y, base_x) % (2 * np.pi)
+    row = np.minimum((q * radial).astype(int), radial - 1)
+    column = np.minimum((phi * (azimuthal / (2 * np.pi))).astype(int), azimuthal - 1)
+    observed = np.bincount(row * azimuthal + column, minlength=radial * azimuthal)
     phis, phi_weights = panels(np.linspace(0, 2 * np.pi, azimuthal + 1), order)
     expected = np.empty((radial, azimuthal))
     for i in range(radial):
@@ -106,7 +107,6 @@ def chi_squared(
         cells = (density * phi_weights).reshape(len(qs), azimuthal, order).sum(axis=2)
         expected[i] = q_weights @ cells
     expected = count * expected.ravel()
-    observed = observed.ravel()
     few = expected < 5
     f = np.append(expected[~few], expected[few].sum())
     o = np.append(observed[~few], observed[few].sum())
