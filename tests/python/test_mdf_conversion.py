@@ -137,6 +137,16 @@ def test_rmse_is_the_least_squares_fit_of_scipy(m, target):
             assert fitted == pytest.approx((value, rmse), rel=tolerance)
 
 
+def test_tables_are_exact(rng):
+    """Also where they meet: at pi / 8, and where Schlick's function ends at 4 m_B."""
+    m = np.concatenate([np.geomspace(1e-5, 1, 20), rng.uniform(0.1, 1, 40), [0.14, 0.1453, 0.3927]])
+    for name in ltmd.MDF_PARAMETERS:
+        for gamma in (0.5, 16) if name == "gtr_alpha" else (2,):
+            converted = ltmd.convert(m, BECKMANN, name, gamma=gamma)
+            fitted = [ltmd.fit_mdf(x, BECKMANN, name, min(4 * x, np.pi / 2), gamma)[0] for x in m]
+            np.testing.assert_allclose(converted, fitted, rtol=1e-10, err_msg=name)
+
+
 def test_fits_of_any_pair():
     """With references other than Beckmann, and angles far beyond the peak."""
     for source, value, target, angle in (

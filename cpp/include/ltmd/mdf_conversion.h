@@ -33,8 +33,8 @@ inline constexpr std::array<const char*, 4> mdf_method_names{"rmse", "half_angle
 /// The method of a name; throws InvalidInput with the list of names for any other.
 LTMD_API MdfMethod parse_mdf_method(std::string_view name);
 
-/// A conversion from one parameter to another, for many values: rmse prepares tables (1e-9), about
-/// a millisecond. Copies share nothing that changes.
+/// A conversion from one parameter to another, for many values. The tables of rmse are exact to
+/// 1e-10 and made once; those of gtr_alpha with a gamma other than 2 each time, in milliseconds.
 ///
 /// Values whose m_B is in [1e-6, 1] are converted, as far as the result is in its range too; above
 /// m_B = 1/sqrt(2), where Beckmann's unit form has its peak off the normal, they match ever less.
