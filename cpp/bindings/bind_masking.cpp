@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bindings.h"
 #include "ltmd/microfacet_brdf.h"
+#include "ltmd/require_range.h"
 #include "masking_models.h"
 
 namespace ltmd::python {
@@ -27,6 +28,8 @@ MaskingModel parse_masking_model(const std::string& name) {
     }
     throw py::value_error("model must be one of " + known + ", not '" + name + "'");
 }
+
+void require_points(int points) { require_range("points", points, 1, 1024); }
 
 void bind_masking(py::module_& module) {
     using namespace py::literals;

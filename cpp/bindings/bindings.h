@@ -70,5 +70,9 @@ void bind_gtr(py::module_& module);
 void bind_std_distribution(py::module_& module);
 void bind_phong(py::module_& module);
 void bind_mdf_conversion(py::module_& module);
+void bind_smith_masking(py::module_& module);
+void bind_height_masking(py::module_& module);
+void bind_diffuse_microfacets(py::module_& module);
+void bind_multiple_scattering(py::module_& module);
 
 }  // namespace ltmd::python

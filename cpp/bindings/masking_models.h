@@ -9,6 +9,9 @@ namespace ltmd::python {
 /// The model of that name. Throws ValueError that lists the names for another.
 MaskingModel parse_masking_model(const std::string& name);
 
+/// Throws ValueError unless a quadrature may have so many points a side.
+void require_points(int points);
+
 /// function(directions..., out) for float or double: arrays of directions of one shape, and
 /// float[...] for the result.
 template <class Function>

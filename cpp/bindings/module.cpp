@@ -37,6 +37,10 @@ PYBIND11_MODULE(_ltmd, module) {
     bind_std_distribution(module);
     bind_phong(module);
     bind_mdf_conversion(module);
+    bind_smith_masking(module);
+    bind_height_masking(module);
+    bind_diffuse_microfacets(module);
+    bind_multiple_scattering(module);
     bind_texel_coverage(module);
     bind_exr(module);
     bind_sequence_baker(module);

@@ -24,10 +24,9 @@ DISTRIBUTION = [
     "visible_normals", "gauss_quadrature", "lobe_normals", "ggx", "beckmann", "lobe_mixture",
     "beckmann_mixture", "tabulated", "gtr", "std_distribution", "phong", "sheen", "discrete_ggx",
     "ashikhmin_shirley", "gauss", "schlick_mdf", "sawicki_ds", "ellipsoid_ndf",
-    "non_centred_distribution", "fresnel", "beta_function", "v_cavity", "masking",
-    "microfacet_brdf",
-    "diffuse_microfacets", "multiple_scattering", "heightfield", "mdf_conversion", "major_axis",
-    "line_integral", "environment",
+    "non_centred_distribution", "fresnel", "beta_function", "v_cavity", "masking", "smith_masking",
+    "height_masking", "microfacet_brdf", "visible_normals_mean", "diffuse_microfacets",
+    "multiple_scattering", "mdf_conversion", "major_axis", "line_integral", "environment",
 ]  # fmt: skip
 JOIN = ["lobe_parameters"]
 FILES = ["exr", "passes", "sequence_baker", "verify"]

@@ -393,3 +393,49 @@ def fit_mdf(
     largest_angle: float,
     gamma: float = 2.0,
 ) -> tuple[float, float]: ...
+def smith_lambda(slopes: Callable[[float], float], cotangent: ArrayLike) -> NDArray[np.float64]: ...
+def smith_lambda_of_shape(shape: Callable[[float], float], a: ArrayLike) -> NDArray[np.float64]: ...
+def shape_integral(shape: Callable[[float], float]) -> float: ...
+
+Heights = Literal["uniform", "gaussian"]
+
+def G1_at_height(
+    d: Distribution, v: ArrayLike, m: ArrayLike, h: ArrayLike, heights: Heights = "gaussian"
+) -> _Floats: ...
+def G2_at_height(
+    d: Distribution,
+    wi: ArrayLike,
+    wo: ArrayLike,
+    m: ArrayLike,
+    h: ArrayLike,
+    heights: Heights = "gaussian",
+) -> _Floats: ...
+def diffuse_brdf(
+    d: Distribution,
+    wi: ArrayLike,
+    wo: ArrayLike,
+    model: MaskingModel = "height_correlated",
+    points: int = 32,
+) -> _Floats: ...
+def diffuse_weak_furnace(
+    d: Distribution,
+    wi: ArrayLike,
+    wo: ArrayLike,
+    model: MaskingModel = "height_correlated",
+    points: int = 32,
+) -> _Floats: ...
+def single_scattering_albedo(
+    d: Distribution, wo: ArrayLike, model: MaskingModel = "height_correlated", points: int = 32
+) -> _Floats: ...
+def average_visible_fresnel(
+    d: Distribution, wo: ArrayLike, fresnel: Callable[[_Floats], ArrayLike], points: int = 32
+) -> _Floats: ...
+
+class MultipleScattering:
+    def __init__(
+        self, d: Distribution, model: MaskingModel = "height_correlated", points: int = 32
+    ) -> None: ...
+    @property
+    def mean_energy(self) -> float: ...
+    def energy(self, w: ArrayLike) -> _Floats: ...
+    def brdf(self, wi: ArrayLike, wo: ArrayLike) -> _Floats: ...
