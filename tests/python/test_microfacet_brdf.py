@@ -88,7 +88,7 @@ def test_albedo_of_mirrors_is_what_visible_normals_reflect(model, alpha, angle):
 @each_physical_model
 @pytest.mark.parametrize("side", [1, -1])
 @pytest.mark.parametrize("alpha", [0.3, 0.7])
-@pytest.mark.parametrize("angle", [0.0, 0.8, 1.4])
+@pytest.mark.parametrize("angle", [0.8, 1.4])
 def test_albedo_of_a_dielectric_is_what_visible_normals_scatter(model, side, alpha, angle):
     d = ltmd.GGX(alpha)
     wi = side * direction(angle)

@@ -14,12 +14,12 @@ template <MicrofacetDistribution D, std::floating_point Real = typename D::Real>
 Real diffuse_brdf(const D& d, const Direction<Real>& wi, const Direction<Real>& wo,
                   MaskingModel model = MaskingModel::height_correlated, int points = 32) {
     if (!(wi.z > 0 && wo.z > 0)) return 0;
-    // <wo,m> D(m) G1(wo) / wo_z is the density of what wo sees.
+    // <wo,m> D(m) over the facing area is the density of what wo sees.
     const auto from = [&](const Direction<Real>& v, const Direction<Real>& other) {
         const Real mean = visible_normals_mean(d, v, points, [&](const Direction<Real>& m) {
             return std::max(Real{0}, dot(other, m)) * G2(d, wi, wo, m, model);
         });
-        return mean * (1 + bounded_lambda(d, v)) / other.z;
+        return mean * (d.projected_area(v) / v.z) / other.z;
     };
     return std::numbers::inv_pi_v<Real> / 2 * (from(wo, wi) + from(wi, wo));
 }
@@ -34,7 +34,7 @@ Real diffuse_weak_furnace(const D& d, const Direction<Real>& wi, const Direction
     const Real mean = visible_normals_mean(d, wo, points, [&](const Direction<Real>& m) {
         return std::max(Real{0}, dot(wi, m)) * G1(d, wo, m, model);
     });
-    return std::numbers::inv_pi_v<Real> * mean * (1 + bounded_lambda(d, wo));
+    return std::numbers::inv_pi_v<Real> * mean * (d.projected_area(wo) / wo.z);
 }
 
 /// The same for arrays, on thread_count() threads. Throws InvalidInput unless all have one length.

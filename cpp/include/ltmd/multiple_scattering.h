@@ -23,7 +23,7 @@ Real single_scattering_albedo(const D& d, const Direction<Real>& wo,
         const Direction<Real> wi{cosine * m.x - wo.x, cosine * m.y - wo.y, cosine * m.z - wo.z};
         return wi.z > 0 ? G2(d, wi, wo, m, model) : Real{0};
     });
-    return mean * (1 + bounded_lambda(d, wo));
+    return mean * (d.projected_area(wo) / wo.z);
 }
 
 /// The same for arrays, on thread_count() threads. Throws InvalidInput unless all have one length.
