@@ -26,13 +26,13 @@ def test_albedo_is_the_integral_of_the_brdf(model, angle):
 def test_white_furnace_of_both_terms(matrix):
     """eq. 103."""
     d = ltmd.GGX(0.8).transformed(MATRICES[matrix])
-    rest = ltmd.MultipleScattering(d)
-    wi, weight = hemisphere(1, 120)
+    rest = ltmd.MultipleScattering(d, points=24)
+    wi, weight = hemisphere(1, 48)
     for angle in (0.1, 0.9, 1.4):
         wo = direction(angle)
         both = ltmd.brdf(d, wi, wo) + rest.brdf(wi, wo)
         assert np.sum(both * weight) == pytest.approx(1, abs=3e-3)
-        assert rest.energy(wo) == 1 - ltmd.single_scattering_albedo(d, wo)
+        assert rest.energy(wo) == 1 - ltmd.single_scattering_albedo(d, wo, points=24)
 
 
 def test_reciprocity_and_range(rng):
