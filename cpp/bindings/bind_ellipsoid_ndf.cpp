@@ -62,8 +62,8 @@ Raises ValueError with A's numbers unless its condition is at most 1e7. Source: 
             "alpha_x"_a, "alpha_y"_a, "theta_x"_a = 0.0, "theta_y"_a = 0.0, "theta_z"_a = 0.0,
             R"(A = diag(alpha_x, alpha_y, 1) R_x(theta_x) R_y(theta_y) R_z(theta_z); alphas in [1e-6, 1e6], angles in radians.
 
-theta_z turns the axes of the alphas by -theta_z about the normal; of a long ellipsoid (both alphas below 1), theta_x > 0 tips
-the flattest part's normal toward +V and theta_y > 0 toward -U. Source: ellipsoid-ndf, eq. 2, 3.)")
+theta_z turns the axes of the alphas by -theta_z about the normal; if both alphas are below 1, theta_x > 0 tips the peak of D
+toward +V and theta_y > 0 toward -U. Source: ellipsoid-ndf, eq. 2, 3.)")
         .def_static(
             "from_sggx",
             [](py::handle s) { return Class(Ellipsoid::from_sggx(parse_matrix3(s, "S"))); }, "S"_a,

@@ -20,7 +20,7 @@ SKEWED = {
     "tilted .3": ltmd.EllipsoidNDF.from_angles(0.25, 0.25, 0.3, 0, 0),
     "tilted and turned": ltmd.EllipsoidNDF.from_angles(0.2, 0.5, -0.2, 0.4, 1.0),
     "mixed": ltmd.EllipsoidNDF(MIXED),
-    "flat": ltmd.EllipsoidNDF.from_angles(3, 1.5, 0.3, 0.2, 0),
+    "tall": ltmd.EllipsoidNDF.from_angles(3, 1.5, 0.3, 0.2, 0),
 }
 # Also views from which the mesosurface faces away.
 AZIMUTHS = (0.6, 2.2, 3.7, 5.3)

@@ -23,8 +23,8 @@ public:
     /// A = diag(alpha_x, alpha_y, 1) R_x(theta_x) R_y(theta_y) R_z(theta_z), rotations in radians,
     /// counter-clockwise seen from the end of their axis (eq. 2, 3). A acts on points, so the
     /// surface itself turns by R's inverse: theta_z turns the axes of alpha_x and alpha_y by
-    /// -theta_z about the normal; the normals where the curvature of a long ellipsoid (both alphas
-    /// below 1) is least, R's third row, tip by theta_x > 0 toward +V, by theta_y > 0 toward -U.
+    /// -theta_z about the normal; the peak of D, R's third row if both alphas are below 1, tips by
+    /// theta_x > 0 toward +V, by theta_y > 0 toward -U.
     /// Throws InvalidInput unless both alphas are in [1e-6, 1e6], the angles finite and A as above.
     static Ellipsoid from_angles(double alpha_x, double alpha_y, double theta_x, double theta_y,
                                  double theta_z);
