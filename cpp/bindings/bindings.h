@@ -74,5 +74,11 @@ void bind_smith_masking(py::module_& module);
 void bind_height_masking(py::module_& module);
 void bind_diffuse_microfacets(py::module_& module);
 void bind_multiple_scattering(py::module_& module);
+void bind_sheen(py::module_& module);
+void bind_gauss(py::module_& module);
+void bind_schlick_mdf(py::module_& module);
+void bind_sawicki_ds(py::module_& module);
+void bind_discrete_ggx(py::module_& module);
+void bind_ashikhmin_shirley(py::module_& module);
 
 }  // namespace ltmd::python

@@ -41,6 +41,12 @@ PYBIND11_MODULE(_ltmd, module) {
     bind_height_masking(module);
     bind_diffuse_microfacets(module);
     bind_multiple_scattering(module);
+    bind_sheen(module);
+    bind_gauss(module);
+    bind_schlick_mdf(module);
+    bind_sawicki_ds(module);
+    bind_discrete_ggx(module);
+    bind_ashikhmin_shirley(module);
     bind_texel_coverage(module);
     bind_exr(module);
     bind_sequence_baker(module);

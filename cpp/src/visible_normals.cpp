@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "find_root.h"
+#include "gauss_legendre.h"
 #include "ltmd/errors.h"
 #include "text.h"
 
@@ -44,33 +46,6 @@ RadialTable::Tail simpson(const Cell& cell) {
                  c = cell.at_high * cell.high;
     return {width * (a + b + c), width * (a * cell.low + b * middle + c * cell.high)};
 }
-
-/// The root in [low, high] of a function that grows there, by Newton's method kept in the bracket.
-/// function(t) returns its value and derivative.
-template <class Function>
-double grow_to_zero(double low, double high, double t, const Function& function) {
-    for (int i = 0; i < 60; ++i) {
-        const auto [value, slope] = function(t);
-        (value > 0 ? high : low) = t;
-        double next = t - value / slope;
-        if (!(next >= low && next <= high)) next = (low + high) / 2;
-        // The next step would be the square of this one.
-        if (std::abs(next - t) <= 1e-7 * std::abs(next)) return next;
-        t = next;
-    }
-    return t;
-}
-
-/// Gauss-Legendre nodes and weights of [0, 1].
-constexpr std::array<std::array<double, 2>, 8> gauss8{
-    {{0.019855071751231884, 0.050614268145188130},
-     {0.101666761293186630, 0.111190517226687235},
-     {0.237233795041835507, 0.156853322938943644},
-     {0.408282678752175098, 0.181341891689180991},
-     {0.591717321247824902, 0.181341891689180991},
-     {0.762766204958164493, 0.156853322938943644},
-     {0.898333238706813370, 0.111190517226687235},
-     {0.980144928248768116, 0.050614268145188130}}};
 
 constexpr std::size_t angles = 33;
 constexpr double angle_step = pi / 2 / (angles - 1);
@@ -275,7 +250,7 @@ double RadialTable::solve(double area_weight, double moment_weight, double value
                  t_high = std::min(1.0, (high - r) / width);
     if (!(t_high > t_low)) return std::min(high, r + width * t_low);
     const double wanted = at(tail_[i]) - value;
-    const double t = grow_to_zero(t_low, t_high, (t_low + t_high) / 2, [&](double x) {
+    const double t = find_root(t_low, t_high, (t_low + t_high) / 2, [&](double x) {
         const Partial part = partial(i, x);
         const double at_x = r + width * x;
         return std::pair(area_weight * part.area + moment_weight * part.moment - wanted,
@@ -392,7 +367,7 @@ Slope<double> VisibleNormals::sample_visible(const Direction<double>& v,
     const double p0 = share(row, k), rise = share(row, k + 1) - p0;
     const double d0 = derivative(k), d1 = derivative(k + 1);
     const double b = 3 * rise - 2 * d0 - d1, a = d0 + d1 - 2 * rise;
-    const double t = grow_to_zero(0, 1, 0.5, [&](double x) {
+    const double t = find_root(0, 1, 0.5, [&](double x) {
         return std::pair(p0 - wanted + x * (d0 + x * (b + x * a)), d0 + x * (2 * b + 3 * a * x));
     });
     const double phi =
@@ -411,6 +386,14 @@ Slope<double> VisibleNormals::sample_visible(const Direction<double>& v,
     const Slope<double> view =
         across > 0 ? Slope<double>{v.x / across, v.y / across} : Slope<double>{1, 0};
     return {view.x * x - view.y * z, view.y * x + view.x * z};
+}
+
+std::shared_ptr<const VisibleNormals> tabulated_normals(const std::function<double(double)>& p22) {
+    return std::make_shared<const VisibleNormals>(RadialTable([&](const std::vector<double>& r) {
+        std::vector<double> values(r.size());
+        std::ranges::transform(r, values.begin(), p22);
+        return values;
+    }));
 }
 
 }  // namespace ltmd::inline v0

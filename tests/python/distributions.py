@@ -24,4 +24,9 @@ DISTRIBUTIONS = {
     "GTR(0.5, 4)": (ltmd.GTR(0.5, 4.0), 0.4),
     "STD(0.3, 3)": (ltmd.STD(0.3, 3.0), 0.3),
     "Phong(20)": (ltmd.Phong(20.0), 0.3),
+    "Sheen(0.3)": (ltmd.Sheen(0.3), 1.0),
+    "Gauss(0.4)": (ltmd.Gauss(0.4), 0.4),
+    "SchlickMDF(1)": (ltmd.SchlickMDF(1.0), 1.0),
+    "SawickiDS(10)": (ltmd.SawickiDS(10), 0.4),
+    "AshikhminShirley(10, 40)": (ltmd.AshikhminShirley(10, 40), 0.3),
 }

@@ -17,11 +17,7 @@ public:
         : TabulatedMasking<Tabulated, R>(std::move(normals)) {}
     /// Throws as RadialTable.
     explicit Tabulated(const std::function<double(double)>& p22)
-        : Tabulated(RadialTable([&](const std::vector<double>& r) {
-              std::vector<double> values(r.size());
-              std::ranges::transform(r, values.begin(), p22);
-              return values;
-          })) {}
+        : Tabulated(tabulated_normals(p22)) {}
     /// Linear between the slopes r, 0 beyond; throws as RadialTable.
     Tabulated(std::span<const double> r, std::span<const double> p22)
         : Tabulated(RadialTable(r, p22)) {}

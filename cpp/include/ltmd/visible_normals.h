@@ -98,6 +98,10 @@ private:
     std::vector<double> share_;  // of each row, the part of excess_area with |phi| below a node
 };
 
+/// The VisibleNormals of a function of the slope; throws as RadialTable.
+LTMD_API std::shared_ptr<const VisibleNormals> tabulated_normals(
+    const std::function<double(double)>& p22);
+
 /// Lambda, projected_area and the samplers of an isotropic distribution that has P22 in closed
 /// form, or none but the table's; by VisibleNormals in double whatever Real is.
 template <class Derived, std::floating_point R>
