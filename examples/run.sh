@@ -8,7 +8,7 @@ set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 scenes=(balloon suzanne)
 # Made by the Python package alone: NAME.py --out FILE.png.
-plots=(sphere_grid torus_knot mdf_conversion ellipsoid_ndf masking)
+plots=(sphere_grid torus_knot mdf_conversion ellipsoid_ndf masking distributions)
 all=("${scenes[@]}" "${plots[@]}")
 
 usage="usage: examples/run.sh [--list | NAME…], NAME is one of: ${all[*]}"

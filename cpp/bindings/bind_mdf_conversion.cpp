@@ -51,10 +51,10 @@ Source: microfacet-distribution-conversion, eq. 3-15, Tables 2-4.)");
             return py::make_tuple(fit.value, fit.rmse);
         },
         "value"_a, "source"_a, "target"_a, "largest_angle"_a, "gamma"_a = 2.0,
-        R"((value, rmse): the `target` whose D/D(0) is nearest to that of `source` = `value`, and the root mean square difference.
+        R"((value, rmse): the `target`, in its range, whose D/D(0) is nearest to that of `source` = `value`, and the root mean square difference.
 
-largest_angle: radians in (0, pi/2]; the mean is over [0, largest_angle]. The value is not held to its range. Other arguments and
-errors as convert. Source: microfacet-distribution-conversion, Table 2, where the source is beckmann_alpha.)");
+largest_angle: radians in (0, pi/2]; the mean is over [0, largest_angle]. Other arguments and errors as convert.
+Source: microfacet-distribution-conversion, Table 2, where the source is beckmann_alpha.)");
 }
 
 }  // namespace ltmd::python

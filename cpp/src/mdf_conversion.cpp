@@ -58,6 +58,31 @@ constexpr Scale scale_of(MdfFamily family) {
     return exponent ? Scale{-2, 2} : Scale{1, 1};
 }
 
+/// The values that a family's formula takes.
+struct Limits {
+    double low, high;
+};
+constexpr Limits limits_of(MdfFamily family) {
+    const auto of = [](MdfParameter parameter) -> Limits {
+        return {mdf_info(parameter).low, mdf_info(parameter).high};
+    };
+    switch (family) {
+        case MdfFamily::beckmann:
+            return of(MdfParameter::beckmann_alpha);
+        case MdfFamily::gauss:
+            return of(MdfParameter::gauss_m);
+        case MdfFamily::gtr:
+            return of(MdfParameter::gtr_alpha);
+        case MdfFamily::phong:
+            return of(MdfParameter::phong_exponent);
+        case MdfFamily::schlick:
+            return of(MdfParameter::schlick_m);
+        case MdfFamily::sawicki:
+            return of(MdfParameter::sawicki_n);
+    }
+    return {};
+}
+
 // -- Least squares --
 
 /// Quadrature over [0, end], finer towards 0.
@@ -103,13 +128,15 @@ MdfFit fit(const UnitForm& reference, double reference_p, const UnitForm& form, 
         return sum;
     };
     const auto slope = [&](double log_p) { return difference(log_p, false); };
-    double low = std::log(guess), high = low, step = 0.01;
+    const Limits limits = limits_of(form.family);
+    const double least = std::log(limits.low), most = std::log(limits.high);
+    double low = std::clamp(std::log(guess), least, most), high = low, step = 0.01;
     const double at_guess = slope(low);
     // Downhill until the slope changes sign.
-    for (int i = 0; i < 20; ++i, step *= 2) {
+    for (; low > least || high < most; step *= 2) {
         double& next = at_guess > 0 ? low : high;
-        next += at_guess > 0 ? -step : step;
-        if ((slope(next) > 0) != (at_guess > 0)) break;
+        next = std::clamp(next + (at_guess > 0 ? -step : step), least, most);
+        if ((slope(next) > 0) != (at_guess > 0) || next == least || next == most) break;
     }
     const double log_p = find_root(slope, low, high);
     return {std::exp(log_p), std::sqrt(difference(log_p, true) / end)};
@@ -440,7 +467,8 @@ MdfFit fit_mdf(MdfParameter source, double value, MdfParameter target, double la
     const Scale a = scale_of(from.family), b = scale_of(to.family);
     const double guess = b.factor * std::pow(p / a.factor, b.power / a.power);
     const MdfFit nearest = fit(from, p, to, guess, largest_angle);
-    return {parameter_value(target, nearest.value), nearest.rmse};
+    const double found = parameter_value(target, nearest.value);
+    return {std::clamp(found, mdf_info(target).low, mdf_info(target).high), nearest.rmse};
 }
 
 }  // namespace ltmd::inline v0

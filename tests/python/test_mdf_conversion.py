@@ -162,6 +162,15 @@ def test_fits_of_any_pair():
         )
 
 
+def test_a_fit_is_in_range_even_where_there_is_none():
+    """GGX of alpha 1 is flat, a peak narrower than all samples is nothing: any value will do."""
+    for source, value in ((TR, 1), (SCHLICK, 1), (PHONG, 0.01), (TR, 1e-6), (PHONG, 1e13)):
+        for target, angle in itertools.product(ltmd.MDF_PARAMETERS, (1e-3, np.pi / 2)):
+            fitted, rmse = ltmd.fit_mdf(value, source, target, angle)
+            ltmd.unit_mdf(target, fitted, 0)  # refuses what is out of range
+            assert 0 <= rmse <= 1
+
+
 def rmse_relation(names, rows=ROWS):
     """The least-squares values of Table 2's rows, recomputed."""
     return [

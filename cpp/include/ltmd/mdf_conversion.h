@@ -69,9 +69,9 @@ struct MdfFit {
     double rmse;  ///< Root of the mean over the angles of the squared difference.
 };
 
-/// The `target` whose unit form is nearest to that of `source` = `value` over beta in
-/// [0, largest_angle]: Table 2 with Beckmann as source. The value is not held to its range. Throws
-/// InvalidInput for a value or gamma outside its range, or an angle that is not in (0, pi/2].
+/// The `target`, in its range, whose unit form is nearest to that of `source` = `value` over beta
+/// in [0, largest_angle]: Table 2 with Beckmann as source. Throws InvalidInput for a value or gamma
+/// outside its range, or an angle that is not in (0, pi/2].
 LTMD_API MdfFit fit_mdf(MdfParameter source, double value, MdfParameter target,
                         double largest_angle, double gamma = 2);
 
