@@ -88,6 +88,9 @@ TEST(NonCentredDistribution, ShowsOnlyNormalsThatFaceTheView) {
     for (const Slope<double>& offset : {Slope<double>{0, 0}, {0.4, -0.2}, {-2, 1}}) {
         expect_normals_that_face<float>(0.3, offset);
         expect_normals_that_face<double>(0.3, offset);
+        // Next to nothing faces some of the views.
+        expect_normals_that_face<float>(1e-3, offset);
+        expect_normals_that_face<double>(1e-3, offset);
     }
 }
 

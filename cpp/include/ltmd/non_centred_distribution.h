@@ -78,7 +78,8 @@ public:
     Direction<Real> sample(const Uniform<Real>& u) const { return from_base(base_.sample(u)); }
 
     /// The base's visible normals for the sheared v. Where the mesosurface faces away they come by
-    /// rejection from those at its horizon, with random numbers hashed from u.
+    /// rejection from those at its horizon, with random numbers hashed from u; where less than
+    /// 1/512 of those would do, one normal that just faces v stands for all.
     Direction<Real> sample_visible(const Direction<Real>& v, const Uniform<Real>& u) const {
         const Direction<Real> w = to_base(v);
         return from_base(faces(w) ? base_.sample_visible(normalized(w), u) : sample_below(w, u));
@@ -88,7 +89,7 @@ private:
     static constexpr double largest_offset = 1e6;
     /// Views of w_z / |w_xy| below this count as the horizon's: bases take views above it.
     static constexpr Real horizon = std::numeric_limits<Real>::epsilon();
-    static constexpr int most_tries = 4096;
+    static constexpr int rarest = 512;
 
     static Real across(const Direction<Real>& w) { return std::sqrt(w.x * w.x + w.y * w.y); }
     static bool faces(const Direction<Real>& w) { return w.z > horizon * across(w); }
@@ -101,24 +102,20 @@ private:
     }
 
     Direction<Real> sample_below(const Direction<Real>& w, Uniform<Real> u) const {
-        const Direction<Real> edge{w.x, w.y, horizon * across(w)};
-        const Direction<Real> level = normalized(edge);
-        std::uint64_t state = std::bit_cast<std::uint64_t>(static_cast<double>(u.x)) * 3 +
-                              std::bit_cast<std::uint64_t>(static_cast<double>(u.y));
-        Direction<Real> best{0, 0, 1};
-        Real most = -std::numeric_limits<Real>::infinity();
-        for (int i = 0; i < most_tries; ++i) {
-            const Direction<Real> m = base_.sample_visible(level, u);
-            const Real facing = dot(w, m);
-            if (facing > random(state) * dot(edge, m)) return m;
-            // Where next to nothing faces w, the normal that faces it most has to do.
-            if (const Real slope = facing / m.z; slope > most) {
-                most = slope;
-                best = m;
+        const Real rim = across(w);
+        const Direction<Real> edge{w.x, w.y, horizon * rim};
+        if (area_below(w) * rarest > base_.projected_area(edge)) {
+            const Direction<Real> level = normalized(edge);
+            std::uint64_t state = std::bit_cast<std::uint64_t>(static_cast<double>(u.x)) * 3 +
+                                  std::bit_cast<std::uint64_t>(static_cast<double>(u.y));
+            for (int i = 0; i < 8 * rarest; ++i) {
+                const Direction<Real> m = base_.sample_visible(level, u);
+                if (const Real facing = dot(w, m); facing > random(state) * dot(edge, m)) return m;
+                u = {random(state), random(state)};
             }
-            u = {random(state), random(state)};
         }
-        return best;
+        const Real slope = static_cast<Real>(1.125) * w.z / (rim * rim);
+        return normalized(Direction<Real>{-slope * w.x, -slope * w.y, 1});
     }
 
     /// The next number in [0, 1) of the generator SplitMix64.
