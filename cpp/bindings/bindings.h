@@ -66,6 +66,7 @@ void bind_fresnel(py::module_& module);
 void bind_masking(py::module_& module);
 void bind_v_cavity(py::module_& module);
 void bind_microfacet_brdf(py::module_& module);
+void bind_lobe_mixture(py::module_& module);
 void bind_gtr(py::module_& module);
 void bind_std_distribution(py::module_& module);
 void bind_phong(py::module_& module);

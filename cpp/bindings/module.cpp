@@ -33,6 +33,7 @@ PYBIND11_MODULE(_ltmd, module) {
     bind_masking(module);
     bind_v_cavity(module);
     bind_microfacet_brdf(module);
+    bind_lobe_mixture(module);
     bind_gtr(module);
     bind_std_distribution(module);
     bind_phong(module);

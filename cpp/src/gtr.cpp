@@ -87,7 +87,8 @@ GTRLobes gtr_lobes(double alpha, double gamma, int nodes) {
         measure.push_back(
             {log_B / range, point.weight * (mass[0] + mass[1] + mass[2]) * std::sqrt(B)});
     }
-    auto rule = gauss_rule(measure, nodes);
+    // More than needed would only pick up the rounding of the points.
+    auto rule = gauss_rule(measure, std::min(nodes, gtr_node_count(alpha, gamma, false)));
     double sum = 0;
     for (auto& node : rule) sum += node.weight /= std::exp(node.x * range / 2);
     for (const auto& node : rule) {

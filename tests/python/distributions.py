@@ -22,6 +22,7 @@ DISTRIBUTIONS = {
     "GTR(0.25, 2.2)": (ltmd.GTR(0.25, 2.2), 0.25),
     "GTR(0.16, 0.5)": (ltmd.GTR(0.16, 0.5), 0.3),
     "GTR(0.5, 4)": (ltmd.GTR(0.5, 4.0), 0.4),
+    "fit_lobes(0.16, 2.5)": (ltmd.fit_lobes(0.16, 2.5), 0.16),
     "STD(0.3, 3)": (ltmd.STD(0.3, 3.0), 0.3),
     "Phong(20)": (ltmd.Phong(20.0), 0.3),
     "Sheen(0.3)": (ltmd.Sheen(0.3), 1.0),

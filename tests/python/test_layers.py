@@ -21,8 +21,8 @@ DISTRIBUTION = [
     "require_range", "unit_mdf", "unit_form",
     "matrix2", "direction", "slope_distribution", "transformed_distribution",
     "any_distribution", "special_functions", "elementary", "error_function", "visible_slope",
-    "gauss_quadrature", "gauss_legendre", "find_root", "visible_normals", "lobe_normals", "ggx",
-    "beckmann", "lobe_mixture",
+    "gauss_quadrature", "gauss_legendre", "find_root", "visible_normals", "lobe_normals",
+    "bounded_normals", "ggx", "beckmann", "lobe_table", "lobe_mixture",
     "beckmann_mixture", "tabulated", "gtr", "std_distribution", "phong", "sheen", "discrete_ggx",
     "ashikhmin_shirley", "gauss", "schlick_mdf", "sawicki_ds", "ellipsoid_ndf",
     "non_centred_distribution", "fresnel", "beta_function", "v_cavity", "masking", "smith_masking",
@@ -178,7 +178,12 @@ def test_shaders_include_only_their_own_headers_and_read_no_files():
 
 def test_shader_headers_keep_the_branches_apart():
     """Tension and frames, lobes, and the shader that joins them."""
-    branches = {"ltmd_frame.h": "", "ltmd_tension.h": "", "ltmd_alpha2.h": ""}
+    branches = {
+        "ltmd_lobe_table.h": "",
+        "ltmd_frame.h": "",
+        "ltmd_tension.h": "",
+        "ltmd_alpha2.h": "",
+    }
     for path in files("osl/include", ".h"):
         assert path.name in branches, f"{path.name} has no place in the layers; give it one here"
         assert not includes(path), f"{path.name}: shader headers include none of the others"

@@ -3,9 +3,11 @@
 
 #include <array>
 #include <cstddef>
+#include <string>
 
+#include "ltmd/bounded_normals.h"
+#include "ltmd/errors.h"
 #include "ltmd/export.h"
-#include "ltmd/lobe_normals.h"
 #include "ltmd/require_range.h"
 #include "ltmd/slope_distribution.h"
 
@@ -32,8 +34,8 @@ struct GTRLobes {
     std::array<std::array<double, capacity>, 3> weight{};
 };
 
-/// With at most `nodes` values of B. Throws InvalidInput unless 1e-4 <= alpha <= 1 and
-/// 0 <= gamma <= 4.
+/// With at most `nodes` values of B, and no more than gtr_node_count() in double precision. Throws
+/// InvalidInput unless 1e-4 <= alpha <= 1 and 0 <= gamma <= 4.
 LTMD_API GTRLobes gtr_lobes(double alpha, double gamma, int nodes);
 
 /// The nodes after which Lambda's relative error is below 1e-7 (single precision) or 1e-12.
@@ -87,8 +89,10 @@ public:
         greatest_power_ = lobes.greatest_power;
         count_ = (lobes.count + lanes - 1) / lanes * lanes;
         B_.fill(1);
+        lobe_alpha_.fill(1);
         for (std::size_t i = 0; i < lobes.count; ++i) {
             B_[i] = static_cast<Real>(lobes.B[i]);
+            lobe_alpha_[i] = static_cast<Real>(std::sqrt(lobes.B[i]));
             for (std::size_t n = 0; n < 3; ++n)
                 weight_[n][i] = static_cast<Real>(lobes.weight[n][i]);
         }
@@ -143,10 +147,9 @@ public:
 
     /// cos^2(theta) by the inverse of the distribution function.
     Direction<Real> sample(const Uniform<Real>& u) const {
-        const Real phi = 2 * std::numbers::pi_v<Real> * u.y;
-        const Real sin2 = sample_sin2(u.x);
-        const Real radius = std::sqrt(sin2);
-        return {radius * std::cos(phi), radius * std::sin(phi), std::sqrt(1 - sin2)};
+        const auto [cosine, sine] = elementary::turn(u.y);
+        const Real sin2 = sample_sin2(u.x), radius = std::sqrt(sin2);
+        return {radius * cosine, radius * sine, std::sqrt(1 - sin2)};
     }
 
     /// Exact: of a lobe, picked by its projected area.
@@ -167,7 +170,7 @@ public:
         while (i > 0 && !(area[i] > 0)) rest = area[--i];
         rest = std::min(rest, area[i]);
 
-        const Real beta = std::sqrt(B_[i]);
+        const Real beta = lobe_alpha_[i];
         const Direction<Real> w = normalized(Direction<Real>{beta * v.x, beta * v.y, v.z});
         Direction<Real> h;
         const Real ggx = lobe_area<2>(v.z, across2, B_[i], weight_[0][i], 0, 0);
@@ -186,8 +189,55 @@ public:
         return normalized(Direction<Real>{beta * h.x, beta * h.y, h.z});
     }
 
+    /// Drawn from sample() or, with the probability alpha, so that the direction that reflects v is
+    /// uniform above the horizon (microsurface-transformations, appendix B, which leaves the
+    /// probability open). `u` is used twice.
+    Direction<Real> sample_mixed(const Direction<Real>& v, const Uniform<Real>& u) const {
+        const auto share = static_cast<Real>(alpha_);
+        if (u.y >= share)
+            return sample({u.x, share < 1 ? std::min(Real{1}, (u.y - share) / (1 - share)) : u.y});
+        const auto [cosine, sine] = elementary::turn(u.y / share);
+        const Real radius = std::sqrt(std::max(Real{0}, (1 - u.x) * (1 + u.x)));
+        return normalized(Direction<Real>{v.x + radius * cosine, v.y + radius * sine, v.z + u.x});
+    }
+
+    /// The density of sample_mixed(), per steradian: that of both ways.
+    Real pdf_mixed(const Direction<Real>& v, const Direction<Real>& m) const {
+        const auto share = static_cast<Real>(alpha_);
+        const Real facing = dot(v, m);
+        const bool above = facing > 0 && 2 * facing * m.z > v.z;
+        const Real uniform = above ? 2 * std::numbers::inv_pi_v<Real> * facing : Real{0};
+        return m.z > 0 ? share * uniform + (1 - share) * D(m) * m.z : Real{0};
+    }
+
+    /// Visible normals for reflection of a unit vector v (see bounded_normals.h), under M of a
+    /// lobe_frame(M). Throws InvalidInput for gamma > 2, whose lobes are not all GGX.
+    Direction<Real> sample_bounded(const Direction<Real>& v, const Uniform<Real>& u,
+                                   const LobeFrame<Real>& frame = {}) const {
+        return bounded(v, frame).sample(u);
+    }
+
+    /// The density of sample_bounded(), per steradian of m; that of the reflected direction is
+    /// this over 4 v.m.
+    Real pdf_bounded(const Direction<Real>& v, const Direction<Real>& m,
+                     const LobeFrame<Real>& frame = {}) const {
+        // D under M (eq. 22), which is diag(1 / x, 1 / y) in the frame.
+        const Direction<Real> turned = frame.into(m);
+        const Direction<Real> base{turned.x / frame.x, turned.y / frame.y, m.z};
+        const Real length2 = dot(base, base);
+        const Real density = D(normalized(base)) / (frame.x * frame.y * length2 * length2);
+        return bounded(v, frame).pdf(m, density);
+    }
+
 private:
     static constexpr std::size_t lanes = 4;
+
+    BoundedNormals<Real> bounded(const Direction<Real>& v, const LobeFrame<Real>& frame) const {
+        if (greatest_power_ > 2)
+            throw InvalidInput("bounded visible normals need gamma <= 2, not " +
+                               std::to_string(gamma_));
+        return {{lobe_alpha_.data(), count_}, {weight_[0].data(), count_}, v, frame};
+    }
 
     template <int n>
     struct Powers {
@@ -259,7 +309,7 @@ private:
     Real log_range_, sample_scale_, sample_power_;
     int greatest_power_;
     std::size_t count_;
-    std::array<Real, GTRLobes::capacity> B_;
+    std::array<Real, GTRLobes::capacity> B_, lobe_alpha_;
     std::array<std::array<Real, GTRLobes::capacity>, 3> weight_{};
     std::array<Real, 5> spline_;
 };

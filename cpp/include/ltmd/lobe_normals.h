@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 
+#include "ltmd/elementary.h"
 #include "ltmd/slope_distribution.h"
 
 /// Visible normals of lobes whose slopes are of scale 1; views and normals of other lobes are
@@ -15,10 +16,12 @@ namespace ltmd::inline v0 {
 /// A point c of the spherical cap c_z >= lowest, uniform in [0, 1]^2 by area.
 template <std::floating_point Real>
 Direction<Real> sample_cap(Real lowest, const Uniform<Real>& u) {
-    const Real phi = 2 * std::numbers::pi_v<Real> * u.x;
-    const Real z = (1 - u.y) * (1 - lowest) + lowest;
-    const Real sine = std::sqrt(std::max(Real{0}, (1 - z) * (1 + z)));
-    return {sine * std::cos(phi), sine * std::sin(phi), z};
+    const auto [cosine, sine] = elementary::turn(u.x);
+    // The lowest point of a sphere would reflect the pole to no normal at all.
+    const Real share = std::max(1 - u.y, std::numeric_limits<Real>::epsilon());
+    const Real z = share * (1 - lowest) + lowest;
+    const Real radius = std::sqrt(std::max(Real{0}, (1 - z) * (1 + z)));
+    return {radius * cosine, radius * sine, z};
 }
 
 /// The visible normals of slopes with the density n - 1 over pi (1 + |slope|^2)^-n, n = 2 + extra,
@@ -34,11 +37,10 @@ Direction<Real> sample_visible_student(int extra, const Direction<Real>& w,
                                        const Uniform<Real>& u) {
     const Real r2 = 1 - (extra == 1 ? std::sqrt(1 - u.x) : std::cbrt(1 - u.x));
     const Real radius = std::sqrt(std::max(Real{0}, r2));
-    const Real azimuth = 2 * std::numbers::pi_v<Real> * u.y;
-    const Real sin_b = radius * std::cos(azimuth);
+    const auto [cosine, sine] = elementary::turn(u.y);
+    const Real sin_b = radius * cosine;
     const Real cos_b = std::sqrt(std::max(Real{0}, 1 - sin_b * sin_b));
-    const Real e =
-        cos_b > 0 ? std::clamp(radius * std::sin(azimuth) / cos_b, Real{-1}, Real{1}) : Real{0};
+    const Real e = cos_b > 0 ? std::clamp(radius * sine / cos_b, Real{-1}, Real{1}) : Real{0};
     const Real e2 = e * e;
     // The distribution function of (1 - e^2)^extra, in [0, 1].
     const Real third =
@@ -53,19 +55,24 @@ Direction<Real> sample_visible_student(int extra, const Direction<Real>& w,
     };
     const Real least = integral(-w.z, across), greatest = integral(1, 0);
     const Real wanted = least + third * (greatest - least);
-    Real low = std::asin(-w.z), high = std::numbers::pi_v<Real> / 2;
-    Real a = low + (high - low) * std::sqrt(third) / 2;
-    const Real precision = 2 * std::numeric_limits<Real>::epsilon() * (greatest - least);
-    for (int step = 0; step < 40; ++step) {
-        const Real s = std::sin(a), c = std::cos(a);
-        const Real error = integral(s, c) - wanted;
+    // In turns from the first visible angle, whose sine is -w_z, to at most that of a = pi / 2;
+    // asin(z) <= pi / 2 z.
+    Real low = 0, high = (1 + w.z) / 4, turns = high * std::sqrt(third) / 2;
+    Real sin_a = -w.z, cos_a = across;
+    constexpr Real precision = 4 * std::numeric_limits<Real>::epsilon();
+    for (int step = 0; step < 16; ++step) {
+        const auto [c, s] = elementary::turn(turns);
+        cos_a = std::max(Real{0}, across * c + w.z * s);
+        sin_a = cos_a > 0 ? across * s - w.z * c : Real{1};
+        const Real error = integral(sin_a, cos_a) - wanted;
         if (std::abs(error) <= precision) break;
-        (error > 0 ? high : low) = a;
-        const Real slope = (extra == 1 ? c * c : c * c * c * c) * (c * w.z + s * across);
-        const Real newton = a - error / slope;
-        a = newton > low && newton < high ? newton : (low + high) / 2;
+        (error > 0 ? high : low) = turns;
+        const Real c2 = cos_a * cos_a;
+        const Real slope = (extra == 1 ? c2 : c2 * c2) * (cos_a * w.z + sin_a * across);
+        const Real newton = turns - error / (2 * std::numbers::pi_v<Real> * slope);
+        turns = newton > low && newton < high ? newton : (low + high) / 2;
     }
-    const Real s = std::sin(a) * cos_b, c = std::max(Real{0}, std::cos(a) * cos_b);
+    const Real s = sin_a * cos_b, c = cos_a * cos_b;
     if (!(across > 0)) return {s, sin_b, c};
     const Real x = w.x / across, y = w.y / across;
     return {x * s - y * sin_b, y * s + x * sin_b, c};
