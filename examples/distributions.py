@@ -40,6 +40,11 @@ DISTRIBUTIONS = {
     "GTR, tail 4": ltmd.GTR(0.45, 4.0),
     "STD, tail 3": ltmd.STD(0.31, 3.0),
     "Phong": ltmd.Phong(like_ggx("phong_exponent")),
+    "Gauss": ltmd.Gauss(like_ggx("gauss_m")),
+    "Schlick": ltmd.SchlickMDF(like_ggx("schlick_m")),
+    "Sawicki": ltmd.SawickiDS(like_ggx("sawicki_n")),
+    "Sheen": ltmd.Sheen(ALPHA),
+    "Discrete GGX": ltmd.DiscreteGGX(ALPHA, 1000, 0.05, 0),
     "Tabulated": ltmd.Tabulated(two_scales),
 }
 
@@ -53,7 +58,7 @@ def slope(theta):
 
 
 def all_distributions(d_log, d_polar, p22_log, p22_polar):
-    colours = plt.get_cmap("tab20")([0, 2, 4, 5, 6, 8, 10])
+    colours = plt.get_cmap("tab20")([0, 2, 4, 5, 6, 8, 10, 12, 14, 16, 18, 1])
     slopes = np.geomspace(1e-2, 30, 400)
     positive = ANGLES[ANGLES >= 0]
     for (name, d), colour in zip(DISTRIBUTIONS.items(), colours, strict=True):
