@@ -97,9 +97,13 @@ private:
     std::vector<double> ratio_;
 };
 
+double mean_excess(double k, double t) {
+    static const MeanExcess table;
+    return table(k, t);
+}
+
 /// The radial distribution on one line: the integral of P(t' > t) beyond t.
 double excess(double k, double t) {
-    static const MeanExcess mean_excess;
     const double z = z_of(k, t);
     return z < largest_z ? std::exp(-z) * mean_excess(k, t) : 0;
 }
@@ -255,16 +259,17 @@ Slope<double> AshikhminShirleyNormals::sample_visible(const Direction<double>& v
     const auto [delta, cosine, k] = line(static_cast<double>(i) + at);
 
     // Along the line, from the far end that faces the view to where it turns away; moment is the
-    // integral of t over its density beyond t.
+    // integral of t over its density beyond t, area that of the density.
     const double tau = c / cosine, back = c + cosine * excess(k, 0);
     const double y = u.y * (2 * c + cosine * excess(k, tau));
-    const auto moment = [&, k = k](double t, double z) { return t * std::exp(-z) + excess(k, t); };
+    const auto moment = [k = k](double t, double area) { return area * (t + mean_excess(k, t)); };
     double t;
     if (y < back) {
-        const double log_y = std::log(y);
-        const double z = find_root(0, largest_z, 1, [&, k = k, cosine = cosine](double x) {
+        // As a logarithm it is nearly linear in z, and falls slower than -z.
+        const double log_y = std::log(y), guess = std::min(largest_z, std::log(back) - log_y);
+        const double z = find_root(0, largest_z, guess, [&, k = k, cosine = cosine](double x) {
             const double there = t_of(k, x), area = std::exp(-x);
-            const double beyond = c * area + cosine * moment(there, x);
+            const double beyond = c * area + cosine * moment(there, area);
             return std::pair(log_y - std::log(beyond), (c + cosine * there) * area / beyond);
         });
         t = -t_of(k, z);
@@ -272,7 +277,7 @@ Slope<double> AshikhminShirleyNormals::sample_visible(const Direction<double>& v
         const double end = std::min(largest_z, z_of(k, tau));
         const double z = find_root(0, end, end / 2, [&, k = k, cosine = cosine](double x) {
             const double there = t_of(k, x), area = std::exp(-x);
-            return std::pair(2 * c - y - c * area + cosine * moment(there, x),
+            return std::pair(2 * c - y - c * area + cosine * moment(there, area),
                              (c - cosine * there) * area);
         });
         t = std::min(tau, t_of(k, z));

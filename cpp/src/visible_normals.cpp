@@ -249,8 +249,9 @@ double RadialTable::solve(double area_weight, double moment_weight, double value
     const double t_low = std::max(0.0, (low - r) / width),
                  t_high = std::min(1.0, (high - r) / width);
     if (!(t_high > t_low)) return std::min(high, r + width * t_low);
-    const double wanted = at(tail_[i]) - value;
-    const double t = find_root(t_low, t_high, (t_low + t_high) / 2, [&](double x) {
+    const double wanted = at(tail_[i]) - value, all = at(tail_[i]) - at(tail_[i + 1]);
+    const double guess = all > 0 ? std::clamp(wanted / all, t_low, t_high) : t_low;
+    const double t = find_root(t_low, t_high, guess, [&](double x) {
         const Partial part = partial(i, x);
         const double at_x = r + width * x;
         return std::pair(area_weight * part.area + moment_weight * part.moment - wanted,
