@@ -63,7 +63,7 @@ std::array<Real, count> interpolate(const std::array<double, count>& values) {
 
 template <std::floating_point R>
 StudentSlopes<R>::StudentSlopes(double k)
-    : k_(static_cast<Real>(k)), inv_k_(static_cast<Real>(1 / k)) {
+    : k_(static_cast<Real>(k)), inv_k_(static_cast<Real>(1 / k)), heavy_(k > 1.5 ? 0 : 1) {
     const double root_k = std::sqrt(k);
     const double beta = half_step_of_gamma(k) / std::sqrt(std::numbers::pi);
     c_ = static_cast<Real>(beta / root_k);

@@ -19,7 +19,8 @@ GEOMETRY = [
 ]  # fmt: skip
 DISTRIBUTION = [
     "require_range", "unit_mdf", "unit_form",
-    "matrix2", "direction", "slope_distribution", "transformed_distribution",
+    "matrix2", "direction", "slope_distribution", "wide_loop",
+    "transformed_distribution",
     "any_distribution", "special_functions", "elementary", "error_function", "visible_slope",
     "gauss_quadrature", "gauss_legendre", "find_root", "visible_normals", "lobe_normals",
     "bounded_normals", "ggx", "beckmann", "lobe_table", "lobe_mixture",

@@ -91,10 +91,10 @@ def test_visible_slopes_invert_their_distribution(dtype, gamma, degrees, rng):
     if dtype == np.float64:
         # The integrals are fitted to 1e-13; the last billionths and steep slopes converge slower.
         allowed = 1e-12 + 1e-8 * ((u > 1 - 1e-6) | (np.abs(x) > 1e4))
-    # Steeper slopes than 1e12, most of them at grazing angles for gamma near 3/2, are horizontal.
-    told = x > -1e12
+    # Steeper slopes than 1e11, most of them at grazing angles for gamma near 3/2, are horizontal.
+    told = x > -1e11
     assert np.all((np.abs(share - u) <= allowed)[told])
-    assert np.all(u[~told] <= below(-9e11) / (below(p / q) if q > 0 else p))
+    assert np.all(u[~told] <= below(-9e10) / (below(p / q) if q > 0 else p))
     across = 1 - tail(y / np.sqrt(1 + x**2), k + 0.5)
     np.testing.assert_allclose(across, np.float64(dtype(0.3)), atol=100 * resolution)
 

@@ -7,6 +7,7 @@
 
 #include "ltmd/export.h"
 #include "ltmd/transformed_distribution.h"
+#include "ltmd/wide_loop.h"
 
 namespace ltmd::inline v0 {
 
@@ -78,38 +79,61 @@ private:
     struct Model final : Interface {
         explicit Model(Distribution d) : distribution(std::move(d)) {}
         void P22(const Slope<Real>* slope, Real* out, std::size_t n) const override {
-            for (std::size_t i = 0; i < n; ++i) out[i] = distribution.P22(slope[i]);
+            each([](const Distribution& d, const auto&... item) { return d.P22(item...); }, n, out,
+                 slope);
         }
         void D(const Direction<Real>* m, Real* out, std::size_t n) const override {
-            for (std::size_t i = 0; i < n; ++i) out[i] = distribution.D(m[i]);
+            each([](const Distribution& d, const auto&... item) { return d.D(item...); }, n, out,
+                 m);
         }
         void Lambda(const Direction<Real>* v, Real* out, std::size_t n) const override {
-            for (std::size_t i = 0; i < n; ++i) out[i] = distribution.Lambda(v[i]);
+            each([](const Distribution& d, const auto&... item) { return d.Lambda(item...); }, n,
+                 out, v);
         }
         void G1(const Direction<Real>* v, Real* out, std::size_t n) const override {
-            for (std::size_t i = 0; i < n; ++i) out[i] = distribution.G1(v[i]);
+            each([](const Distribution& d, const auto&... item) { return d.G1(item...); }, n, out,
+                 v);
         }
         void projected_area(const Direction<Real>* v, Real* out, std::size_t n) const override {
-            for (std::size_t i = 0; i < n; ++i) out[i] = distribution.projected_area(v[i]);
+            each([](const Distribution& d,
+                    const auto&... item) { return d.projected_area(item...); },
+                 n, out, v);
         }
         void sample(const Uniform<Real>* u, Direction<Real>* out, std::size_t n) const override {
-            for (std::size_t i = 0; i < n; ++i) out[i] = distribution.sample(u[i]);
+            each([](const Distribution& d, const auto&... item) { return d.sample(item...); }, n,
+                 out, u);
         }
         void pdf(const Direction<Real>* m, Real* out, std::size_t n) const override {
-            for (std::size_t i = 0; i < n; ++i) out[i] = distribution.pdf(m[i]);
+            each([](const Distribution& d, const auto&... item) { return d.pdf(item...); }, n, out,
+                 m);
         }
         void sample_visible(const Direction<Real>* v, const Uniform<Real>* u, Direction<Real>* out,
                             std::size_t n) const override {
-            for (std::size_t i = 0; i < n; ++i) out[i] = distribution.sample_visible(v[i], u[i]);
+            each([](const Distribution& d,
+                    const auto&... item) { return d.sample_visible(item...); },
+                 n, out, v, u);
         }
         void pdf_visible(const Direction<Real>* v, const Direction<Real>* m, Real* out,
                          std::size_t n) const override {
-            for (std::size_t i = 0; i < n; ++i) out[i] = distribution.pdf_visible(v[i], m[i]);
+            each([](const Distribution& d, const auto&... item) { return d.pdf_visible(item...); },
+                 n, out, v, m);
         }
         AnyDistribution transformed(const Matrix2& m) const override {
             using ltmd::transformed;  // beside a distribution's own
             return AnyDistribution(transformed(distribution, m));
         }
+        /// out[i] = function(distribution, in[i]...).
+        template <class Function, class Out, class... In>
+        void each(const Function& function, std::size_t n, Out* out, const In*... in) const {
+            if constexpr (requires { requires Distribution::vectorizes; }) {
+                wide_loop([function,
+                           d = distribution](const In&... item) { return function(d, item...); },
+                          n, out, in...);
+            } else {
+                for (std::size_t i = 0; i < n; ++i) out[i] = function(distribution, in[i]...);
+            }
+        }
+
         Distribution distribution;
     };
 

@@ -14,6 +14,8 @@ template <std::floating_point R>
 class Beckmann : public SlopeDistribution<Beckmann<R>, R> {
 public:
     using Real = R;
+    /// Free of branches: arrays are evaluated in vectors.
+    static constexpr bool vectorizes = true;
 
     /// Throws InvalidInput unless both are in [1e-6, 1e6].
     Beckmann(double alpha_x, double alpha_y)
@@ -33,6 +35,8 @@ public:
                elementary::exp(-(x * x + y * y));
     }
 
+    Real D_any_length(const Direction<Real>& m) const { return this->D(m); }
+
     /// Exact, as accurate relative to itself where it is exponentially small:
     /// (e^(-a^2) / (a sqrt(pi)) - erfc(a)) / 2 with a the cotangent of v's angle in units of alpha,
     /// written as an integral of erfc (masking-shadowing, eq. 69, 83).
@@ -40,26 +44,33 @@ public:
 
     Real projected_area(const Direction<Real>& v) const { return v.z + hidden_area(v); }
 
-    Direction<Real> sample(const Uniform<Real>& u) const {
+    Direction<Real> sample_any_length(const Uniform<Real>& u) const {
         const auto [cosine, sine] = elementary::turn(u.y);
         const Real radius = std::sqrt(-elementary::log(1 - detail::open_uniform(u.x)));
-        return normalized(Direction<Real>{alpha_x_ * radius * cosine, alpha_y_ * radius * sine, 1});
+        return {alpha_x_ * radius * cosine, alpha_y_ * radius * sine, 1};
     }
 
     /// Inverts the distribution function of the visible slopes, of alpha = 1 after a stretch: along
     /// the view's azimuth their density is (w_z - |w_xy| x) e^(-x^2) where that is positive, across
     /// it a Gaussian.
-    Direction<Real> sample_visible(const Direction<Real>& v, const Uniform<Real>& u) const {
+    Direction<Real> sample_visible_any_length(const Direction<Real>& v,
+                                              const Uniform<Real>& u) const {
         const Direction<Real> w{alpha_x_ * v.x, alpha_y_ * v.y, v.z};
         const Real across = std::sqrt(w.x * w.x + w.y * w.y);
         const Real scale = 1 / std::sqrt(across * across + w.z * w.z);
-        const Real flat = 1 / std::max(across, std::numeric_limits<Real>::min());
+        const Real flat = 1 / elementary::max(across, std::numeric_limits<Real>::min());
         const Real cosine = across > 0 ? w.x * flat : Real{1}, sine = w.y * flat;
         const Gaussian slopes;
-        const Real x = visible_slope(slopes, w.z * scale, across * scale, u.x, is_float ? 2 : 4);
-        const Real y = slope_quantile(slopes, u.y, is_float ? 1 : 2);
-        return normalized(Direction<Real>{-alpha_x_ * (cosine * x - sine * y),
-                                          -alpha_y_ * (sine * x + cosine * y), 1});
+        const Real x = visible_slope<is_float ? 2 : 4>(slopes, w.z * scale, across * scale, u.x);
+        const Real y = slope_quantile<is_float ? 1 : 2>(slopes, u.y);
+        return {-alpha_x_ * (cosine * x - sine * y), -alpha_y_ * (sine * x + cosine * y), 1};
+    }
+
+    Direction<Real> sample(const Uniform<Real>& u) const {
+        return normalized(sample_any_length(u));
+    }
+    Direction<Real> sample_visible(const Direction<Real>& v, const Uniform<Real>& u) const {
+        return normalized(sample_visible_any_length(v, u));
     }
 
 private:

@@ -9,25 +9,40 @@
 #include <cstdint>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 /// Elementary functions for float that have no branches and call nothing, so that loops of them
 /// vectorise; for double those of the standard library. Errors are relative, in units of the
 /// type's epsilon.
 namespace ltmd::inline v0::elementary {
 
+/// The smaller and the greater of two values, by value: references, as the standard library takes,
+/// may keep loops from being vectorised.
+template <std::floating_point Real>
+Real min(Real a, Real b) {
+    return b < a ? b : a;
+}
+template <std::floating_point Real>
+Real max(Real a, Real b) {
+    return a < b ? b : a;
+}
+
 /// The polynomial with coefficients c, lowest power first, at t.
 template <std::floating_point Real, std::size_t count>
 Real polynomial(const std::array<Real, count>& c, Real t) {
-    Real sum = c[count - 1];
-    for (std::size_t i = count - 1; i-- > 0;) sum = sum * t + c[i];
-    return sum;
+    // Not a loop: loops of loops do not vectorise.
+    return [&]<std::size_t... i>(std::index_sequence<i...>) {
+        Real sum = c[count - 1];
+        ((sum = sum * t + c[count - 2 - i]), ...);
+        return sum;
+    }(std::make_index_sequence<count - 1>{});
 }
 
-/// e^x within 1; in float 0 below -87, and about 2e38 from 88 on.
+/// e^x within 1 for x <= 88; in float 0 below -87.
 inline float exp(float x) {
     // e^x = 2^n e^r with r in [-log(2) / 2, log(2) / 2]; adding 3 * 2^22 rounds to integers.
     constexpr float round = 12582912, log2_high = 0.693359375F, log2_low = -2.12194440e-4F;
-    const float bounded = std::max(-87.0F, std::min(88.0F, x));
+    const float bounded = max(-87.0F, x);
     const float n = (bounded * std::numbers::log2e_v<float> + round) - round;
     const float r = (bounded - n * log2_high) - n * log2_low;
     constexpr std::array c{0.49999994F, 0.1666652F, 0.0416684F, 0.00836885F, 0.00138143206F};
@@ -37,10 +52,10 @@ inline float exp(float x) {
 }
 inline double exp(double x) { return std::exp(x); }
 
-/// log(x) within 2 for x > 0; for smaller x that of the smallest normal number.
-inline float log(float x) {
+/// log(x) within 2 for a finite x, not below the smallest normal number.
+inline float log_of_normal(float x) {
     // x = 2^n (1 + f) with 1 + f in [sqrt(1/2), sqrt(2)).
-    const auto bits = std::bit_cast<std::int32_t>(std::max(std::numeric_limits<float>::min(), x));
+    const auto bits = std::bit_cast<std::int32_t>(x);
     const std::int32_t n = (bits - 0x3f3504f3) >> 23;
     const float f = std::bit_cast<float>(bits - n * 0x800000) - 1;
     constexpr std::array c{0.33333331F, -0.2500082F,  0.20001227F,  -0.16623358F,
@@ -50,13 +65,15 @@ inline float log(float x) {
     const float f2 = f * f;
     return (f + (f * f2 * polynomial(c, f) + power * log2_low - f2 / 2)) + power * log2_high;
 }
+/// log(x) within 2 for x > 0; for smaller x that of the smallest normal number.
+inline float log(float x) { return log_of_normal(max(std::numeric_limits<float>::min(), x)); }
 inline double log(double x) { return std::log(x); }
 
 /// log(1 + x) within 3 for x >= 0.
 inline float log1p(float x) {
-    const float bounded = std::min(x, std::numeric_limits<float>::max());
+    const float bounded = min(x, std::numeric_limits<float>::max());
     const float sum = 1 + bounded;
-    return log(sum) + (bounded - (sum - 1)) / sum;
+    return log_of_normal(sum) + (bounded - (sum - 1)) / sum;
 }
 inline double log1p(double x) { return std::log1p(x); }
 

@@ -67,7 +67,7 @@ Real rough_erfc_inverse(Real r) {
     constexpr Real b = static_cast<Real>(0.147);
     const Real l = elementary::log(r * (2 - r));
     const Real half = 2 * std::numbers::inv_pi_v<Real> / b + l / 2, c = -l / b;
-    return std::sqrt(std::max(Real{0}, c / (std::sqrt(half * half + c) + half)));
+    return std::sqrt(elementary::max(Real{0}, c / (std::sqrt(half * half + c) + half)));
 }
 
 }  // namespace ltmd::inline v0

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "ltmd/elementary.h"
 #include "ltmd/require_range.h"
 #include "ltmd/slope_distribution.h"
 
@@ -12,6 +13,8 @@ template <std::floating_point R>
 class GGX : public SlopeDistribution<GGX<R>, R> {
 public:
     using Real = R;
+    /// Free of branches: arrays are evaluated in vectors.
+    static constexpr bool vectorizes = true;
 
     /// Throws InvalidInput unless both are in [1e-6, 1e6].
     GGX(double alpha_x, double alpha_y)
@@ -29,11 +32,13 @@ public:
 
     /// Also takes a vector of any length, at which P22 is D.
     Real D(const Direction<Real>& m) const {
-        if (!(m.z > 0)) return 0;
         const Real x = m.x / alpha_x_, y = m.y / alpha_y_;
         const Real sum = x * x + y * y + m.z * m.z;
-        return std::numbers::inv_pi_v<Real> / (alpha_x_ * alpha_y_ * sum * sum);
+        const Real value = std::numbers::inv_pi_v<Real> / (alpha_x_ * alpha_y_ * sum * sum);
+        return m.z > 0 ? value : Real{0};
     }
+
+    Real D_any_length(const Direction<Real>& m) const { return D(m); }
 
     Real Lambda(const Direction<Real>& v) const {
         const Real x = alpha_x_ * v.x / v.z, y = alpha_y_ * v.y / v.z;
@@ -47,24 +52,30 @@ public:
         return (v.z + length(stretched)) / 2;
     }
 
-    Direction<Real> sample(const Uniform<Real>& u) const {
-        const Real phi = 2 * std::numbers::pi_v<Real> * u.y;
+    Direction<Real> sample_any_length(const Uniform<Real>& u) const {
+        const auto [cosine, sine] = elementary::turn(u.y);
         const Real radius = std::sqrt(u.x);
-        return normalized(Direction<Real>{alpha_x_ * radius * std::cos(phi),
-                                          alpha_y_ * radius * std::sin(phi), std::sqrt(1 - u.x)});
+        return {alpha_x_ * radius * cosine, alpha_y_ * radius * sine, std::sqrt(1 - u.x)};
     }
 
     /// Spherical caps: the visible half of a sphere's normals is a cap of reflected directions.
-    Direction<Real> sample_visible(const Direction<Real>& v, const Uniform<Real>& u) const {
+    Direction<Real> sample_visible_any_length(const Direction<Real>& v,
+                                              const Uniform<Real>& u) const {
         const Direction<Real> w = normalized(Direction<Real>{alpha_x_ * v.x, alpha_y_ * v.y, v.z});
-        const Real phi = 2 * std::numbers::pi_v<Real> * u.x;
+        const auto [cosine, sine] = elementary::turn(u.x);
         // At 1 the normal may vanish.
         const Real height = std::min(u.y, 1 - std::numeric_limits<Real>::epsilon());
         const Real z = (1 - height) * (1 + w.z) - w.z;
-        const Real sine = std::sqrt(std::max(Real{0}, (1 - z) * (1 + z)));
-        return normalized(Direction<Real>{alpha_x_ * (sine * std::cos(phi) + w.x),
-                                          alpha_y_ * (sine * std::sin(phi) + w.y),
-                                          std::max(Real{0}, z + w.z)});
+        const Real radius = std::sqrt(std::max(Real{0}, (1 - z) * (1 + z)));
+        return {alpha_x_ * (radius * cosine + w.x), alpha_y_ * (radius * sine + w.y),
+                std::max(Real{0}, z + w.z)};
+    }
+
+    Direction<Real> sample(const Uniform<Real>& u) const {
+        return normalized(sample_any_length(u));
+    }
+    Direction<Real> sample_visible(const Direction<Real>& v, const Uniform<Real>& u) const {
+        return normalized(sample_visible_any_length(v, u));
     }
 
 private:

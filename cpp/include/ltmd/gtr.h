@@ -117,6 +117,13 @@ public:
         return peak_ * std::pow(sum, -power_);
     }
 
+    Real D_any_length(const Direction<Real>& m) const {
+        const Real length2 = dot(m, m);
+        const Real sum = m.z * m.z + (m.x * m.x + m.y * m.y) * inverse_alpha2_;
+        const Real value = peak_ * std::pow(sum / length2, -power_) / (length2 * length2);
+        return m.z > 0 ? value : Real{0};
+    }
+
     Real Lambda(const Direction<Real>& v) const {
         if (masking_ == GTRMasking::spline) return spline_lambda(v);
         const Real z = v.z, across2 = v.x * v.x + v.y * v.y;

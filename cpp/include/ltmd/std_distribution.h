@@ -26,10 +26,12 @@ public:
     }
     Real rough_tail_inverse(Real r) const { return flat_to_slope(-elementary::log(r)); }
     Real rough_inverse(Real share, Real r, Real tail) const {
-        if (k_ > Real{1.5}) return share * tail + (1 - share) * rough_moment_inverse(r);
+        const Real blend = share * tail + (1 - share) * rough_moment_inverse(r);
         // Heavy tails: from below, as each part alone is smaller than the sum.
-        return std::max(rough_tail_inverse(std::min(Real{1}, r / share)),
-                        rough_moment_inverse(std::min(Real{1}, r / (1 - share))));
+        const Real below =
+            elementary::max(rough_tail_inverse(elementary::min(Real{1}, r / share)),
+                            rough_moment_inverse(elementary::min(Real{1}, r / (1 - share))));
+        return heavy_ * below + (1 - heavy_) * blend;
     }
     Real hidden(Real p, Real q) const {
         const Real a = p / q, root = std::sqrt(q * q + p * p * inv_k_);
@@ -56,11 +58,13 @@ private:
     Real place(Real p, Real root) const { return (a_ * p - b_ * root) / (p + b_ * root); }
     /// z with (1 + z^2 / k)^-k = e^-x.
     Real flat_to_slope(Real x) const {
-        return std::sqrt(k_ * elementary::expm1(std::min(x * inv_k_, largest_exponent)));
+        return std::sqrt(k_ * elementary::expm1(elementary::min(x * inv_k_, largest_exponent)));
     }
-    static constexpr Real largest_exponent = 70;
+    static constexpr Real largest_exponent = 55;
 
     Real k_, inv_k_, c_, moment_, a_, b_;
+    /// 1 for heavy tails, else 0.
+    Real heavy_;
     std::array<Real, count> tail_, hidden_;
 };
 
@@ -76,6 +80,8 @@ template <std::floating_point R>
 class STD : public SlopeDistribution<STD<R>, R> {
 public:
     using Real = R;
+    /// Free of branches: arrays are evaluated in vectors.
+    static constexpr bool vectorizes = true;
 
     /// Throws InvalidInput unless alpha is in [1e-6, 1e6] and gamma in [1.51, 1e9]; at 3/2 masking
     /// becomes total.
@@ -96,36 +102,46 @@ public:
     Real D(const Direction<Real>& m) const {
         const Real x = m.x / alpha_, y = m.y / alpha_, rest = (x * x + y * y) * inv_k_;
         const Real z2 = m.z * m.z, sum = z2 + rest;
-        const Real power = elementary::exp((1 - k_) * elementary::log1p(rest / std::max(z2, tiny)));
+        const Real power =
+            elementary::exp((1 - k_) * elementary::log1p(rest / elementary::max(z2, tiny)));
         const Real value = std::numbers::inv_pi_v<Real> / (alpha_ * alpha_) * power / (sum * sum);
         return m.z > 0 ? value : Real{0};
     }
+
+    Real D_any_length(const Direction<Real>& m) const { return D(m); }
 
     /// Exact: 1e-12 in double, 1e-6 in float, of 1 + Lambda.
     Real Lambda(const Direction<Real>& v) const { return hidden_area(v) / v.z; }
     Real projected_area(const Direction<Real>& v) const { return v.z + hidden_area(v); }
 
-    Direction<Real> sample(const Uniform<Real>& u) const {
+    Direction<Real> sample_any_length(const Uniform<Real>& u) const {
         const auto [cosine, sine] = elementary::turn(u.y);
         const Real x = -elementary::log(1 - detail::open_uniform(u.x)) * inv_k_;
         const Real radius = alpha_ * std::sqrt(k_ * elementary::expm1(x));
-        return normalized(Direction<Real>{radius * cosine, radius * sine, 1});
+        return {radius * cosine, radius * sine, 1};
     }
 
     /// Inverts the distribution function of the visible slopes: Student's along the view's azimuth,
     /// times what faces the view; across it Student's of the next half power.
-    Direction<Real> sample_visible(const Direction<Real>& v, const Uniform<Real>& u) const {
+    Direction<Real> sample_visible_any_length(const Direction<Real>& v,
+                                              const Uniform<Real>& u) const {
         constexpr bool is_float = std::same_as<Real, float>;
         const Real horizontal = std::sqrt(v.x * v.x + v.y * v.y);
-        const Real flat = 1 / std::max(horizontal, tiny);
+        const Real flat = 1 / elementary::max(horizontal, tiny);
         const Real cosine = horizontal > 0 ? v.x * flat : Real{1}, sine = v.y * flat;
-        const Real scale = 1 / std::max(alpha_ * horizontal, v.z);
+        const Real scale = 1 / elementary::max(alpha_ * horizontal, v.z);
         const Real x =
-            visible_slope(along_, v.z * scale, alpha_ * horizontal * scale, u.x, is_float ? 4 : 7);
-        const Real y = slope_quantile(across_, u.y, is_float ? 2 : 4) *
+            visible_slope<is_float ? 4 : 7>(along_, v.z * scale, alpha_ * horizontal * scale, u.x);
+        const Real y = slope_quantile<is_float ? 2 : 4>(across_, u.y) *
                        std::sqrt((1 + x * x * inv_k_) * k_ / (k_ + Real{0.5}));
-        return normalized(Direction<Real>{-alpha_ * (cosine * x - sine * y),
-                                          -alpha_ * (sine * x + cosine * y), 1});
+        return {-alpha_ * (cosine * x - sine * y), -alpha_ * (sine * x + cosine * y), 1};
+    }
+
+    Direction<Real> sample(const Uniform<Real>& u) const {
+        return normalized(sample_any_length(u));
+    }
+    Direction<Real> sample_visible(const Direction<Real>& v, const Uniform<Real>& u) const {
+        return normalized(sample_visible_any_length(v, u));
     }
 
 private:

@@ -15,6 +15,7 @@ class TransformedDistribution
     : public SlopeDistribution<TransformedDistribution<Base>, typename Base::Real> {
 public:
     using Real = typename Base::Real;
+    static constexpr bool vectorizes = requires { requires Base::vectorizes; };
 
     /// Throws InvalidInput, with M's numbers, unless M is finite and invertible (condition at most
     /// 1e6).
@@ -37,8 +38,12 @@ public:
     /// |det M| / |M^T m|^4 D(u), u = M^T m / |M^T m| (eq. 13, 22).
     Real D(const Direction<Real>& m) const {
         const Direction<Real> u{m_.xx * m.x + m_.yx * m.y, m_.xy * m.x + m_.yy * m.y, m.z};
-        const Real length2 = dot(u, u);
-        return area_ / (length2 * length2) * base_.D(normalized(u));
+        if constexpr (requires { base_.D_any_length(u); }) {
+            return area_ * base_.D_any_length(u);
+        } else {
+            const Real length2 = dot(u, u);
+            return area_ / (length2 * length2) * base_.D(normalized(u));
+        }
     }
 
     /// Lambda(M^-1 v): masking goes with the surface (eq. 12).
@@ -48,11 +53,19 @@ public:
     Real projected_area(const Direction<Real>& v) const { return base_.projected_area(to_base(v)); }
 
     /// M^-T u, normalised, of the base's sample u (eq. 26).
-    Direction<Real> sample(const Uniform<Real>& u) const { return from_base(base_.sample(u)); }
+    Direction<Real> sample(const Uniform<Real>& u) const {
+        if constexpr (requires { base_.sample_any_length(u); })
+            return from_base(base_.sample_any_length(u));
+        else
+            return from_base(base_.sample(u));
+    }
 
     /// The base's visible normal for M^-1 v, turned by M^-T (eq. 28).
     Direction<Real> sample_visible(const Direction<Real>& v, const Uniform<Real>& u) const {
-        return from_base(base_.sample_visible(normalized(to_base(v)), u));
+        if constexpr (requires { base_.sample_visible_any_length(v, u); })
+            return from_base(base_.sample_visible_any_length(to_base(v), u));
+        else
+            return from_base(base_.sample_visible(normalized(to_base(v)), u));
     }
 
 private:

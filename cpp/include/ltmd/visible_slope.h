@@ -5,6 +5,7 @@
 #include <cmath>
 #include <concepts>
 #include <limits>
+#include <utility>
 
 #include "ltmd/elementary.h"
 
@@ -41,26 +42,33 @@ inline constexpr Real smallest_uniform = std::numeric_limits<Real>::epsilon() / 
 
 template <std::floating_point Real>
 Real open_uniform(Real u) {
-    return std::min(std::max(u, smallest_uniform<Real>), 1 - 2 * smallest_uniform<Real>);
+    return elementary::min(elementary::max(u, smallest_uniform<Real>),
+                           1 - 2 * smallest_uniform<Real>);
 }
 
-/// z in [0, most) at which W(z) = p tail + q moment + rest is `target`, from a start, by Halley's
-/// method for log W; dW/dz = -(p + q z) density. W is positive and falls.
-template <SlopeMarginal Marginal, std::floating_point Real>
-Real solve(const Marginal& f, Real p, Real q, Real rest, Real target, Real z, Real most,
-           int steps) {
+/// z in [0, most) at which W(z) = p tail + q moment + rest is `target`, from a start, by `steps`
+/// of Halley's method for log W; dW/dz = -(p + q z) density. W is positive and falls.
+template <int steps, SlopeMarginal Marginal, std::floating_point Real>
+Real solve(const Marginal& f, Real p, Real q, Real rest, Real target, Real z, Real most) {
     constexpr Real least = static_cast<Real>(1e-30);
-    const Real flat = std::max(p * std::numeric_limits<Real>::epsilon(), least);
-    for (int i = 0; i < steps; ++i) {
+    const Real flat = elementary::max(p * std::numeric_limits<Real>::epsilon(), least);
+    const auto step = [&] {
         const SlopeIntegrals<Real> at = f.at(z);
-        const Real value = std::max(p * at.tail + q * at.moment + rest, least);
-        const Real facing = std::max(p + q * z, flat);
-        const Real slope = -facing * std::max(at.density, least);
-        const Real newton = elementary::log(value / std::max(target, least)) * (value / slope);
+        const Real value = elementary::max(p * at.tail + q * at.moment + rest, least);
+        const Real facing = elementary::max(p + q * z, flat);
+        const Real slope = -facing * elementary::max(at.density, least);
+        const Real newton =
+            elementary::log(value / elementary::max(target, least)) * (value / slope);
         const Real bend = q / facing + at.bend - slope / value;
-        const Real step = newton / std::max(Real{0.5}, std::min(Real{2}, 1 - newton * bend / 2));
-        z = std::max(Real{0}, std::min(z - step, std::max(z, (z + most) / 2)));
-    }
+        const Real halley =
+            newton / elementary::max(Real{0.5}, elementary::min(Real{2}, 1 - newton * bend / 2));
+        z = elementary::max(Real{0},
+                            elementary::min(z - halley, elementary::max(z, (z + most) / 2)));
+    };
+    // Not a loop: loops of loops do not vectorise.
+    [&]<int... i>(std::integer_sequence<int, i...>) {
+        ((static_cast<void>(i), step()), ...);
+    }(std::make_integer_sequence<int, steps>{});
     return z;
 }
 
@@ -68,39 +76,42 @@ Real solve(const Marginal& f, Real p, Real q, Real rest, Real target, Real z, Re
 
 /// The slope x below which the share u of the visible slopes lies, whose density is
 /// (p - q x) f(x) for x < p / q; p, q >= 0 are of the order of 1.
-template <SlopeMarginal Marginal, std::floating_point Real>
-Real visible_slope(const Marginal& f, Real p, Real q, Real u, int steps) {
+template <int steps, SlopeMarginal Marginal, std::floating_point Real>
+Real visible_slope(const Marginal& f, Real p, Real q, Real u) {
     constexpr Real tiny = std::numeric_limits<Real>::min();
     u = detail::open_uniform(u);
     const Real moment = f.at(Real{0}).moment;
     const Real hidden = f.hidden(p, q);
     const Real below_zero = p + q * moment;
-    const Real above_zero = std::max(p - q * moment + hidden, tiny);
+    const Real above_zero = elementary::max(p - q * moment + hidden, tiny);
     const Real all = 2 * p + hidden;
     const bool low = u * all < below_zero;
-    const Real r = low ? u * all / below_zero : std::min(Real{1}, (1 - u) * all / above_zero);
+    const Real r =
+        low ? u * all / below_zero : elementary::min(Real{1}, (1 - u) * all / above_zero);
     const Real tail = f.rough_tail_inverse(r);
     const Real start_low = f.rough_inverse(p / below_zero, r, tail);
     // A triangle or f, whichever is narrower.
-    const Real most = p / std::max(q, tiny);
-    const Real triangle = std::min(most, Real{1e18F}) * (1 - std::sqrt(r));
-    const Real ratio = std::min(triangle, tail) / std::max(std::max(triangle, tail), tiny);
+    const Real most = p / elementary::max(q, tiny);
+    const Real triangle = elementary::min(most, Real{1e18F}) * (1 - std::sqrt(r));
+    const Real ratio =
+        elementary::min(triangle, tail) / elementary::max(elementary::max(triangle, tail), tiny);
     const Real ratio2 = ratio * ratio;
-    const Real start_high = std::min(triangle, tail) / std::sqrt(std::sqrt(1 + ratio2 * ratio2));
+    const Real start_high =
+        elementary::min(triangle, tail) / std::sqrt(std::sqrt(1 + ratio2 * ratio2));
     const Real target = r * (low ? below_zero : above_zero);
-    const Real z = detail::solve(f, p, low ? q : -q, low ? Real{0} : hidden, target,
-                                 low ? start_low : start_high,
-                                 low ? std::numeric_limits<Real>::max() : most, steps);
+    const Real z = detail::solve<steps>(f, p, low ? q : -q, low ? Real{0} : hidden, target,
+                                        low ? start_low : start_high,
+                                        low ? std::numeric_limits<Real>::max() : most);
     return low ? -z : z;
 }
 
 /// The slope x below which the share u of f lies.
-template <SlopeMarginal Marginal, std::floating_point Real>
-Real slope_quantile(const Marginal& f, Real u, int steps) {
+template <int steps, SlopeMarginal Marginal, std::floating_point Real>
+Real slope_quantile(const Marginal& f, Real u) {
     u = detail::open_uniform(u);
-    const Real r = 2 * std::min(u, 1 - u);
-    const Real z = detail::solve(f, Real{1}, Real{0}, Real{0}, r, f.rough_tail_inverse(r),
-                                 std::numeric_limits<Real>::max(), steps);
+    const Real r = 2 * elementary::min(u, 1 - u);
+    const Real z = detail::solve<steps>(f, Real{1}, Real{0}, Real{0}, r, f.rough_tail_inverse(r),
+                                        std::numeric_limits<Real>::max());
     return u < Real{0.5} ? -z : z;
 }
 
