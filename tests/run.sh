@@ -4,7 +4,7 @@
 # the exit code is then 1.
 #   tests/run.sh [--fast | --long] [STAGE…]
 # --fast takes the installed tools as they are and leaves out the tests marked slow. --long adds the
-# stages long (tests/long.sh) and window (a real Blender window).
+# tests marked long and the stages long (tests/long.sh) and window (a real Blender window).
 # Stages: environment cpp ctest wheel extension format python osl4.5 osl5.2 blender4.5 blender5.2 both
 # (default: all, in this order); osl and blender name both versions.
 set -uo pipefail
@@ -14,12 +14,13 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.." || exit 1
 
 ALL=(environment cpp ctest wheel extension format python osl4.5 osl5.2 blender4.5 blender5.2 both)
 LONG=(long window)
+LEFT_OUT="not long"
 FAST=
 STAGES=()
 for argument in "$@"; do
     case "$argument" in
-        --fast) FAST=1 ;;
-        --long) ALL+=("${LONG[@]}") ;;
+        --fast) FAST=1 LEFT_OUT="not long and not slow" ;;
+        --long) ALL+=("${LONG[@]}") LEFT_OUT= ;;
         osl | blender) for version in "${LTMD_BLENDERS[@]}"; do STAGES+=("$argument$version"); done ;;
         *)
             case " ${ALL[*]} ${LONG[*]} " in
@@ -70,8 +71,7 @@ stage_format() {
 # pytest's own exit code 5, nothing collected, is a failure too.
 pytest_of() {
     ltmd_wheel || return 1
-    local options=(-q -rfEs --durations=5 -p no:cacheprovider)
-    [ -z "$FAST" ] || options+=(-m "not slow")
+    local options=(-q -rfEs --durations=5 -p no:cacheprovider -m "$LEFT_OUT")
     timeout 1200 "$LTMD_TOOLS/bin/python" -m pytest "${options[@]}" "$@"
 }
 

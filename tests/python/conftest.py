@@ -6,6 +6,7 @@ import pytest
 
 def pytest_configure(config):
     config.addinivalue_line("markers", "slow: takes more than a few seconds; left out by --fast")
+    config.addinivalue_line("markers", "long: one of hundreds alike; run by --long alone")
 
 
 @pytest.fixture
