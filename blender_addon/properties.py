@@ -9,6 +9,8 @@ OVERRIDABLE = {"LIBRARY_OVERRIDABLE"}
 SOURCES = (
     ("NONE", "None", "LTMD is not set up on this object"),
     ("LIVE", "Live", "Measured while rendering, from the rest state and the deformed surface"),
+    ("ATTRIBUTE", "Attribute", "Measured by a modifier at every frame, smooth, along the UV map"),
+    ("TENSOR", "Tensor", "Measured by a modifier at every frame, smooth, without a UV map"),
     ("TEXTURE", "Texture", "Read from the baked images, one per frame"),
 )
 

@@ -82,6 +82,19 @@ def add_tension_outputs(tree):
     add_output(tree, "Tangent", "Vector", "Direction of the UV map's U on the surface")
 
 
+def add_uv_input(tree, description):
+    """The UV map of a source of tension."""
+    add_input(tree, "UV", "Vector", description, (0.0, 0.0, 0.0), hide_value=True)
+
+
+def add_attribute(tree, name, place):
+    """The Vector of an attribute of the mesh, (0, 0, 0) where the mesh has none."""
+    node = tree.nodes.new("ShaderNodeAttribute")
+    node.attribute_name = node.label = name
+    node.location = place
+    return node.outputs["Vector"]
+
+
 def ends(tree, x=600):
     """The group's input and output nodes."""
     start = tree.nodes.new("NodeGroupInput")

@@ -33,3 +33,17 @@ int ltmd_uv_edges(vector px, vector py, vector ux, vector uy, output vector eu, 
     float size = ux[0] * ux[0] + ux[1] * ux[1] + uy[0] * uy[0] + uy[1] * uy[1];
     return abs(det) > 1e-7 * size;
 }
+
+// dP/du of the UV map at this shading point as a unit vector, from the derivatives of P and UV; 0
+// without a UV map. Exact on each triangle: the Tangent node's is averaged over each vertex, the
+// frame of a tension is not.
+vector ltmd_uv_tangent(vector dx_p, vector dy_p, vector dx_uv, vector dy_uv)
+{
+    float radius = length(dx_p);
+    if (radius <= 0 || !isfinite(radius))
+        return vector(0);
+    vector eu, ev;
+    if (!ltmd_uv_edges(dx_p / radius, dy_p / radius, dx_uv / radius, dy_uv / radius, eu, ev))
+        return vector(0);
+    return (backfacing() ? -1 : 1) * normalize(eu);
+}

@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""LTMD Normal: wrinkles of a normal map flatten where the skin is stretched."""
+
+from .. import osl_script
+from . import add_input, add_output, ends
+
+NAME = "LTMD Normal"
+VERSION = 1
+
+PARAMETERS = {
+    "Normal": "BentNormal",
+    "Height Response": "HeightResponse",
+    "From Bump": "FromBump",
+}
+
+
+def build(tree):
+    add_output(tree, "Normal", "Vector", "For the Normal of a material")
+    add_input(
+        tree,
+        "Normal",
+        "Vector",
+        "From a Normal Map or Bump node; not linked: the surface's own",
+        (0.0, 0.0, 0.0),
+        hide_value=True,
+    )
+    add_input(
+        tree,
+        "Tension",
+        "Vector",
+        "How the surface is deformed, from one of the LTMD tension nodes. 1, 0, 1 is the rest "
+        "state",
+        (1.0, 0.0, 1.0),
+    )
+    add_input(
+        tree,
+        "Tangent",
+        "Vector",
+        "Direction of the UV map's U on the surface, from the same node as the tension",
+        (0.0, 0.0, 0.0),
+        hide_value=True,
+    )
+    add_input(
+        tree,
+        "Strength",
+        "Float",
+        "How much the bumps follow the deformation: 0 keeps their slopes, 1 is exact, more "
+        "exaggerates",
+        1.0,
+        0.0,
+        4.0,
+    )
+    add_input(
+        tree,
+        "Height Response",
+        "Float",
+        "What a change of area does to the bumps. 0: they keep their height; 1: they keep their "
+        "volume, so stretching flattens wrinkles more and squeezing raises them",
+        0.0,
+        -1.0,
+        2.0,
+    )
+    add_input(
+        tree,
+        "From Bump",
+        "Bool",
+        "Turn on for a Bump node: Blender measures its slopes on the deformed surface, where they "
+        "have followed the stretch already, so only Strength and Height Response change them",
+        False,
+    )
+    start, end = ends(tree, 400)
+    script = osl_script.fill(tree.nodes.new("ShaderNodeScript"), "ltmd_normal")
+    for socket in start.outputs:
+        if socket.name:
+            tree.links.new(socket, script.inputs[PARAMETERS.get(socket.name, socket.name)])
+    tree.links.new(script.outputs["Normal"], end.inputs["Normal"])
