@@ -4,7 +4,7 @@
 from math import pi
 
 from .. import osl_script
-from . import add_input, add_tension_outputs, add_output, add_uv_input, ends
+from . import add_input, add_output, add_tension_outputs, add_uv_input, ends
 
 NAME = "LTMD Warp"
 VERSION = 1

@@ -88,7 +88,7 @@ for back in (False, True):
     values.append(value(tree, output, bend))
 report(values=values)
 """,
-        arguments=dict(matrix=MATRIX, colour=[0.7, 0.35, 0.9], options=OPTIONS),
+        arguments={"matrix": MATRIX, "colour": [0.7, 0.35, 0.9], "options": OPTIONS},
     )
     n = 2 * np.array([0.7, 0.35, 0.9]) - 1
     frame, t = frames(MATRIX)
@@ -127,7 +127,7 @@ for back in (False, True):
     assert np.allclose(values[-len(ARGUMENTS["options"])], plain, atol=1e-6)
 report(values=values)
 """,
-        arguments=dict(matrix=MATRIX, height=[0.8, -0.5], options=OPTIONS),
+        arguments={"matrix": MATRIX, "height": [0.8, -0.5], "options": OPTIONS},
     )
     frame, t = frames(MATRIX)
     # The quad's side is 2 and its UV's 1.

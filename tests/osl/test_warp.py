@@ -98,7 +98,7 @@ for name, mirrored, back, chained in ARGUMENTS["cases"]:
     values.append({k: v[4, 4] for k, v in outputs(tree, output, node).items()})
 report(values=values)
 """,
-        arguments=dict(cases=cases, matrices=matrices, deformation=deformation, own=own),
+        arguments={"cases": cases, "matrices": matrices, "deformation": deformation, "own": own},
     )
     assert len(result["values"]) == len(cases)
     for case, got in zip(cases, result["values"], strict=True):
