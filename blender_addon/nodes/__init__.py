@@ -48,7 +48,7 @@ def remove_unused():
 
 
 def add_input(tree, name, kind, description, default=None, low=None, high=None, **more):
-    """An input of the group; kind is Float, Int, Color, Vector or Shader."""
+    """An input of the group; kind is Float, Int, Bool, Color, Vector or Shader."""
     socket = tree.interface.new_socket(name, in_out="INPUT", socket_type=f"NodeSocket{kind}")
     socket.description = description
     if more.get("subtype"):

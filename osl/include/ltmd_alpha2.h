@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "ltmd_tension.h"
+
 // The alpha^2 matrix of a lobe under a linear map M of the surface: a function of s^t Sigma^-1 s
 // becomes one with Sigma' = h^2 M^-t Sigma M^-1 (microsurface transformations, section 3).
 
@@ -64,18 +66,43 @@ LtmdMatrix ltmd_material_matrix(float stretch, float rotation, float shear)
     return ltmd_product(ltmd_rotation(rotation), m);
 }
 
-// An isotropic lobe of the given alpha under M = T_strength M0, heights scaled by
-// det(T_strength)^-height_response: alpha_x belongs to the direction `angle` from X and is the
-// smaller one, alpha_y to the direction across it.
-void ltmd_lobe(float alpha, vector t, LtmdMatrix m0, float strength, float height_response,
-               output float alpha_x, output float alpha_y, output float angle)
+// Isotropic lobes under M = T_strength M0, heights scaled by det(T_strength)^-height_response:
+// alpha_x = scale_x alpha belongs to the unit vector (along, across) in (X, Y) and is the smaller
+// one, alpha_y = scale_y alpha to the direction across it.
+void ltmd_lobe_scales(vector tension, LtmdMatrix m0, float strength, float height_response,
+                      output float scale_x, output float scale_y, output float along,
+                      output float across)
 {
-    LtmdMatrix ts = ltmd_strengthened(t, strength);
+    LtmdMatrix m = m0;
     float heights = 1;
-    if (height_response != 0)
-        heights = pow(ts.xx * ts.yy - ts.xy * ts.yx, -height_response);
-    float largest, smallest;
-    ltmd_principal(ltmd_product(ts, m0), largest, smallest, angle);
-    alpha_x = alpha * heights / sqrt(largest);
-    alpha_y = alpha * heights / sqrt(smallest);
+    // Written so that it is constant where nothing is linked.
+    if (strength != 0 && !(tension[0] == 1 && tension[1] == 0 && tension[2] == 1)) {
+        LtmdMatrix ts = ltmd_strengthened(ltmd_usable_tension(tension), strength);
+        if (height_response != 0)
+            heights = pow(ts.xx * ts.yy - ts.xy * ts.yx, -height_response);
+        m = ltmd_product(ts, m0);
+    }
+    // Eigenvalues and eigenvector of M M^t, the latter without angles.
+    float xx = m.xx * m.xx + m.xy * m.xy;
+    float xy = m.xx * m.yx + m.xy * m.yy;
+    float yy = m.yx * m.yx + m.yy * m.yy;
+    float det = m.xx * m.yy - m.xy * m.yx;
+    float half_difference = (xx - yy) / 2;
+    float radius = hypot(half_difference, xy);
+    float largest = (xx + yy) / 2 + radius;
+    along = 1;
+    across = 0;
+    if (radius <= 1e-6 * largest) {
+        // A tangent is not needed, and rounding may not make one needed.
+        scale_x = heights / sqrt(abs(det));
+        scale_y = scale_x;
+    } else {
+        scale_x = heights / sqrt(largest);
+        scale_y = heights * sqrt(largest) / abs(det);
+        along = half_difference >= 0 ? half_difference + radius : xy;
+        across = half_difference >= 0 ? xy : radius - half_difference;
+        float length = hypot(along, across);
+        along /= length;
+        across /= length;
+    }
 }

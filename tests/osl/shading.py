@@ -19,7 +19,7 @@ from blender_addon.nodes import glossy, live_tension, tension_view, texture_tens
 __all__ = [
     "affine_quad", "glossy", "group", "lobe", "live_tension", "material", "nodes", "render", "show",
     "strengthened", "tension_model", "tension_view", "texture_tension", "camera", "cycles",
-    "mesh_object", "write_image", "deform", "material_matrix",
+    "mesh_object", "write_image", "deform", "material_matrix", "shader_node",
 ]  # fmt: skip
 
 QUAD = np.array([(-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0)], float)
@@ -38,6 +38,19 @@ def material(obj):
 
 def group(tree, module):
     return nodes.group_node(tree, module)
+
+
+def shader_node(tree, path):
+    """A Script node of an .osl file that includes the shaders' headers."""
+    from blender_addon.osl_inline import inlined
+
+    node = tree.nodes.new("ShaderNodeScript")
+    text = bpy.data.texts.new("Probe.osl")
+    text.write(inlined(path, ROOT / "osl" / "include"))
+    node.mode = "INTERNAL"
+    node.script = text
+    assert node.outputs, "the shader does not compile"
+    return node
 
 
 def show(tree, output, socket):
