@@ -6,9 +6,8 @@ import numpy as np
 
 from . import nodes, surface
 from .nodes import live_tension, texture_tension
+from .nodes.rest_positions import REST_ATTRIBUTE
 from .writable import is_writable
-
-REST_ATTRIBUTE = live_tension.REST_ATTRIBUTE
 
 # Modifiers that only move vertices, or copy triangles unchanged: a point attribute of the rest
 # positions stays right behind them. Anything else makes new shapes, where only the Generated

@@ -3,24 +3,31 @@
 
 from .. import osl_script
 from . import add_input, add_output, ends
+from .rest_positions import add_rest_positions
 
 NAME = "LTMD Tension View"
-VERSION = 1
+VERSION = 2
+
+LEGEND = "Grey at rest, red where stretched, blue where squeezed, purple where both"
 
 
-def build(tree):
-    add_output(
-        tree,
-        "Emission",
-        "Shader",
-        "Grey at rest, red where stretched, blue where squeezed, purple where both",
-    )
+def add_inputs(tree):
+    """What every view takes."""
+    add_output(tree, "Emission", "Shader", LEGEND)
     add_input(
         tree,
         "Tension",
         "Vector",
-        "From LTMD Live Tension or LTMD Texture Tension",
+        "From LTMD Live Tension or another source of tension",
         (1.0, 0.0, 1.0),
+    )
+    add_input(
+        tree,
+        "Tangent",
+        "Vector",
+        "Direction of the UV map's U on the surface, from the same node as the tension",
+        (0.0, 0.0, 0.0),
+        hide_value=True,
     )
     add_input(
         tree,
@@ -35,10 +42,20 @@ def build(tree):
         tree,
         "Mode",
         "Int",
-        "0 shows the largest and the smallest stretch of any direction, 1 the change of area",
+        "0 shows the largest and the smallest stretch of any direction, 1 the change of area, "
+        "2 also the direction of the largest stretch, by strokes",
         0,
         0,
-        1,
+        2,
+    )
+    add_input(
+        tree,
+        "Density",
+        "Float",
+        "How many strokes fit along the longest side of the object",
+        30.0,
+        1.0,
+        1000.0,
     )
     add_input(
         tree,
@@ -50,12 +67,22 @@ def build(tree):
         1.0,
         subtype="FACTOR",
     )
-    start, end = ends(tree, 500)
+
+
+def build(tree):
+    add_inputs(tree)
+    start, end = ends(tree, 600)
     script = osl_script.fill(tree.nodes.new("ShaderNodeScript"), "ltmd_tension_view")
+    script.location = (150, 0)
     emission = tree.nodes.new("ShaderNodeEmission")
-    emission.location = (250, 0)
+    emission.location = (400, 0)
+    link = tree.links.new
+    rest, fallback, size = add_rest_positions(tree, -200, -150)
+    link(rest, script.inputs["Rest"])
+    link(fallback, script.inputs["RestFallback"])
+    link(size, script.inputs["RestSize"])
     for socket in start.outputs:
         if socket.name:
-            tree.links.new(socket, script.inputs[socket.name])
-    tree.links.new(script.outputs["Color"], emission.inputs["Color"])
-    tree.links.new(emission.outputs["Emission"], end.inputs["Emission"])
+            link(socket, script.inputs[socket.name])
+    link(script.outputs["Color"], emission.inputs["Color"])
+    link(emission.outputs["Emission"], end.inputs["Emission"])

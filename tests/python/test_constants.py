@@ -242,7 +242,7 @@ def test_udim_formula():
 
 def test_attribute_names():
     said = {names(row[0])[0] for row in table("name")}
-    assert assigned("blender_addon/nodes/live_tension.py", "REST_ATTRIBUTE") in said
+    assert assigned("blender_addon/nodes/rest_positions.py", "REST_ATTRIBUTE") in said
     assert assigned("blender_addon/usd.py", "PRIMVAR") in said
     attribute = re.compile(r"[\"'](ltmd_(?:rest|tension|tensor)(?:_(?:off_)?diagonal)?)[\"']")
     for path in sources("blender_addon/**/*.py"):
