@@ -66,15 +66,12 @@ LtmdMatrix ltmd_material_matrix(float stretch, float rotation, float shear)
     return ltmd_product(ltmd_rotation(rotation), m);
 }
 
-// Isotropic lobes under M = T_strength M0, heights scaled by det(T_strength)^-height_response:
-// alpha_x = scale_x alpha belongs to the unit vector (along, across) in (X, Y) and is the smaller
-// one, alpha_y = scale_y alpha to the direction across it.
-void ltmd_lobe_scales(vector tension, LtmdMatrix m0, float strength, float height_response,
-                      output float scale_x, output float scale_y, output float along,
-                      output float across)
+// The map of the surface M = T_strength M0; heights are scaled by det(T_strength)^-height_response.
+LtmdMatrix ltmd_surface_map(vector tension, LtmdMatrix m0, float strength, float height_response,
+                            output float heights)
 {
     LtmdMatrix m = m0;
-    float heights = 1;
+    heights = 1;
     // Written so that it is constant where nothing is linked.
     if (strength != 0 && !(tension[0] == 1 && tension[1] == 0 && tension[2] == 1)) {
         LtmdMatrix ts = ltmd_strengthened(ltmd_usable_tension(tension), strength);
@@ -82,6 +79,18 @@ void ltmd_lobe_scales(vector tension, LtmdMatrix m0, float strength, float heigh
             heights = pow(ts.xx * ts.yy - ts.xy * ts.yx, -height_response);
         m = ltmd_product(ts, m0);
     }
+    return m;
+}
+
+// Isotropic lobes under that map: alpha_x = scale_x alpha belongs to the unit vector
+// (along, across) in (X, Y) and is the smaller one, alpha_y = scale_y alpha to the direction across
+// it.
+void ltmd_lobe_scales(vector tension, LtmdMatrix m0, float strength, float height_response,
+                      output float scale_x, output float scale_y, output float along,
+                      output float across)
+{
+    float heights;
+    LtmdMatrix m = ltmd_surface_map(tension, m0, strength, height_response, heights);
     // Eigenvalues and eigenvector of M M^t, the latter without angles.
     float xx = m.xx * m.xx + m.xy * m.xy;
     float xy = m.xx * m.yx + m.xy * m.yy;
