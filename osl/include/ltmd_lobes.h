@@ -198,9 +198,10 @@ LtmdLobes ltmd_material_lobes(LtmdSurface surface, float table[], float alpha, f
 
 // Arguments of a lobe's closure.
 #define LTMD_LOBE_KIND(lobes, i) (i < lobes.ggx ? "ggx" : "beckmann")
+#define LTMD_LOBE_ALPHAS(surface, lobes, i)                                                       \
+    lobes.alpha##i * surface.scale_x, lobes.alpha##i * surface.scale_y
 #define LTMD_LOBE_FRAME(surface, lobes, i)                                                        \
-    surface.shading, surface.smooth, lobes.alpha##i * surface.scale_x,                            \
-        lobes.alpha##i * surface.scale_y
+    surface.shading, surface.smooth, LTMD_LOBE_ALPHAS(surface, lobes, i)
 
 // Adds the closure of lobe i. The renderer joins a closure with the color it is multiplied by, if
 // that is ready; and the sum grows to the left, as its evaluation has a stack of limited depth.

@@ -14,12 +14,21 @@ from blender_process import ROOT, camera, cycles, mesh_object, render, write_ima
 sys.path.insert(0, str(ROOT))
 
 from blender_addon import nodes  # noqa: E402
-from blender_addon.nodes import glossy, live_tension, tension_view, texture_tension  # noqa: E402
+from blender_addon.nodes import (  # noqa: E402
+    conductor,
+    dielectric,
+    glossy,
+    live_tension,
+    parameters,
+    tension_view,
+    texture_tension,
+)
 
 __all__ = [
-    "affine_quad", "glossy", "group", "lobe", "live_tension", "material", "nodes", "render", "show",
-    "strengthened", "tension_model", "tension_view", "texture_tension", "camera", "cycles",
-    "mesh_object", "write_image", "deform", "material_matrix", "shader_node",
+    "affine_quad", "camera", "conductor", "cycles", "deform", "dielectric", "glossy", "group",
+    "lit_plane", "live_tension", "lobe", "material", "material_matrix", "mesh_object", "nodes",
+    "parameters", "render", "shader_node", "show", "strengthened", "tension_model",
+    "tension_view", "texture_tension", "write_image",
 ]  # fmt: skip
 
 QUAD = np.array([(-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0)], float)
@@ -67,6 +76,22 @@ def deform(obj, positions):
     key = obj.shape_key_add(name="Deformed")
     key.data.foreach_set("co", np.asarray(positions, np.float32).ravel())
     key.value = 1.0
+
+
+def lit_plane():
+    """A square with a UV map under an area light; its tree and output, and view(side)."""
+    obj = mesh_object("Plane", QUAD, [(0, 1, 2, 3)], QUAD_UV)
+    light = bpy.data.objects.new("Light", bpy.data.lights.new("Light", "AREA"))
+    light.data.energy, light.data.size = 60, 1.0
+    bpy.context.scene.collection.objects.link(light)
+
+    def view(side):
+        """See the front (1) or the back (-1), with the light on the same side."""
+        light.location = (0.4, -1.2, 1.5 * side)
+        light.rotation_euler = (0, 0, 0) if side > 0 else (np.pi, 0, 0)
+        return camera((0.8, 1.5, 1.4 * side), ortho_scale=2.4)
+
+    return *material(obj), view
 
 
 def affine_quad(matrix, uv=QUAD_UV, rest_attribute=True):

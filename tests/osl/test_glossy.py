@@ -10,12 +10,7 @@ from shading import *
 """
     + """
 cycles(48, 48, samples=4)
-obj = mesh_object("Plane", [(-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0)], [(0, 1, 2, 3)],
-                  [(0, 0), (1, 0), (1, 1), (0, 1)])
-light = bpy.data.objects.new("Light", bpy.data.lights.new("Light", "AREA"))
-light.data.energy, light.data.size = 60, 1.0
-bpy.context.scene.collection.objects.link(light)
-tree, output = material(obj)
+tree, output, view = lit_plane()
 reflection = group(tree, glossy)
 stock = tree.nodes.new("ShaderNodeBsdfAnisotropic")
 stock.distribution = "GGX"
@@ -23,11 +18,6 @@ stock.inputs["Color"].default_value = (0.9, 0.6, 0.3, 1)
 reflection.inputs["Color"].default_value = (0.9, 0.6, 0.3, 1)
 direction = tree.nodes.new("ShaderNodeCombineXYZ")
 tree.links.new(direction.outputs[0], stock.inputs["Tangent"])
-
-def view(side):
-    light.location = (0.4, -1.2, 1.5 * side)
-    light.rotation_euler = (0, 0, 0) if side > 0 else (np.pi, 0, 0)
-    return camera((0.8, 1.5, 1.4 * side), ortho_scale=2.4)
 
 def picture(node):
     tree.links.new(node.outputs[0], output.inputs["Surface"])
