@@ -4,7 +4,7 @@
 import bpy
 from bpy.props import BoolProperty, StringProperty
 
-from . import nodes, source, surface
+from . import false_colour, nodes, source, surface
 from .writable import REFUSAL, is_writable
 
 
@@ -92,6 +92,7 @@ def remove(obj):
             if other != obj:
                 told.append(f"{material.name} is shared: also removed from {other.name}")
                 _forget(other)
+        false_colour.hide(material)
         source.clear(material)
         created = material.ltmd.created
         surface.remove(material)
@@ -134,7 +135,7 @@ def _new_material(obj):
         raise source.SourceError(f"{obj.name} has no material slot: {REFUSAL}")
 
 
-class _OnObjects:
+class OnObjects:
     object_name: StringProperty(
         name="Object",
         description="Name of the mesh object; empty: the selected ones",
@@ -166,8 +167,11 @@ class _OnObjects:
         self.after(context, done)
         return {"FINISHED"}
 
+    def after(self, context, done):
+        """When all objects are done."""
 
-class LTMD_OT_setup(_OnObjects, bpy.types.Operator):
+
+class LTMD_OT_setup(OnObjects, bpy.types.Operator):
     """Make the highlights of the selected objects follow their deformation"""
 
     bl_idname = "ltmd.setup"
@@ -210,7 +214,7 @@ class LTMD_OT_setup(_OnObjects, bpy.types.Operator):
         self.report({"INFO"} if good else {"WARNING"}, sentence)
 
 
-class LTMD_OT_remove(_OnObjects, bpy.types.Operator):
+class LTMD_OT_remove(OnObjects, bpy.types.Operator):
     """Take LTMD off the selected objects and restore their materials"""
 
     bl_idname = "ltmd.remove"
@@ -221,9 +225,6 @@ class LTMD_OT_remove(_OnObjects, bpy.types.Operator):
         if not is_writable(obj):
             raise source.SourceError(f"{obj.name}: {REFUSAL}")
         return remove(obj)
-
-    def after(self, context, done):
-        pass
 
 
 CLASSES = (LTMD_OT_setup, LTMD_OT_remove)

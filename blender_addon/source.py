@@ -259,8 +259,10 @@ def clear(material):
 
 
 def _connect(tree, tension, lobe):
-    for name in ("Tension", "Tangent"):
-        tree.links.new(tension.outputs[name], lobe.inputs[name])
+    shown = [n for n in tree.nodes if n.get(surface.KEY) == "view" and "Tension" in n.inputs]
+    for node in (lobe, *shown):
+        for name in ("Tension", "Tangent"):
+            tree.links.new(tension.outputs[name], node.inputs[name])
 
 
 def _place(lobe, tension, uv):

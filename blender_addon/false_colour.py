@@ -1,0 +1,77 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The deformation in false colour instead of the material's surface, and back.
+
+The material's own surface stays linked, as the unused side of a Mix Shader before each output, so
+the graph itself records what hiding restores.
+"""
+
+from . import nodes, source, surface
+from .nodes import tension_view, tension_view_no_osl
+
+PART = "view"  # of surface.KEY
+
+MODES = (
+    ("MAGNITUDE", "Magnitude", "The largest and the smallest stretch of any direction", 0),
+    ("AREA", "Area", "How much the area has grown or shrunk", 1),
+    ("DIRECTIONS", "Directions", "Strokes along the direction that is stretched most", 2),
+)
+
+
+def views(material):
+    """The nodes with the false colours."""
+    return [node for node in surface.our_nodes(material, PART) if "Tension" in node.inputs]
+
+
+def is_shown(material):
+    return surface.is_set_up(material) and bool(views(material))
+
+
+def show(material, mode=0, limit=2.0, osl=True):
+    """Show the tension; mode: number in MODES, limit: stretch of full colour."""
+    tree = material.node_tree
+    measured = next(
+        (
+            node
+            for node in surface.our_nodes(material, "surface")
+            if node.type == "GROUP" and "Tension" in node.inputs and "Tangent" in node.inputs
+        ),
+        None,
+    )
+    if measured is None:
+        raise source.SourceError(f"{material.name} has no LTMD node: press Set Up LTMD again")
+    module = tension_view if osl else tension_view_no_osl
+    nodes.ensure(module)
+    hide(material)
+    _insert(tree, tree.get_output_node("CYCLES"), module, measured, mode, limit)
+
+
+def hide(material):
+    """Show the material's own surface again."""
+    tree = material.node_tree
+    for node in surface.our_nodes(material, PART):
+        if node.type == "MIX_SHADER":
+            own = node.inputs[1].links[0].from_socket if node.inputs[1].is_linked else None
+            for target in [wire.to_socket for wire in node.outputs[0].links]:
+                if own is not None:
+                    tree.links.new(own, target)
+        tree.nodes.remove(node)
+
+
+def _insert(tree, output, module, measured, mode, limit):
+    before = tree.nodes.active
+    mix = surface.own(tree.nodes.new("ShaderNodeMixShader"), PART, output.parent)
+    mix.inputs[0].default_value = 1.0
+    mix.label = "Show Tension"
+    mix.location = (output.location.x - 20, output.location.y + 200)
+    view = surface.own(nodes.group_node(tree, module), PART, output.parent)
+    view.location = (output.location.x - 260, output.location.y + 200)
+    view.inputs["Mode"].default_value = mode
+    view.inputs["Range"].default_value = limit
+    for name in ("Tension", "Tangent"):
+        if measured.inputs[name].is_linked:
+            tree.links.new(measured.inputs[name].links[0].from_socket, view.inputs[name])
+    if output.inputs["Surface"].is_linked:
+        tree.links.new(output.inputs["Surface"].links[0].from_socket, mix.inputs[1])
+    tree.links.new(view.outputs[0], mix.inputs[2])
+    tree.links.new(mix.outputs[0], output.inputs["Surface"])
+    tree.nodes.active = before
