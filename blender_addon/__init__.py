@@ -3,7 +3,7 @@
 
 import importlib
 
-_NAMES = ("properties", "evaluate", "setup", "show_tension", "bake", "command", "panel")
+_NAMES = ("properties", "evaluate", "setup", "show_tension", "versions", "bake", "command", "panel")
 _registered = []
 
 

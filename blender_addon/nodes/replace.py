@@ -1,0 +1,90 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Show another group in a group node. Links, values and animation follow the sockets' names: the
+identifiers by which Blender would match them are those of another group.
+"""
+
+import re
+
+from . import ensure
+
+
+def replace(node, module, renamed=None):
+    """Let `node` show the group of `module`; renamed: {old socket name: new one}.
+
+    Sockets that only the new group has get its defaults. Raises RuntimeError if the group cannot be
+    made; then nothing is changed.
+    """
+    group = ensure(module)
+    if node.node_tree == group:
+        return
+    renamed = renamed or {}
+
+    def new_name(name):
+        return renamed.get(name, name)
+
+    tree = node.id_data
+    before = node.node_tree.name if node.node_tree else ""
+    order = [new_name(socket.name) for socket in node.inputs]
+    values = {new_name(s.name): (s.type, _value(s)) for s in node.inputs}
+    hidden = {new_name(s.name) for s in (*node.inputs, *node.outputs) if s.hide}
+    sources = {new_name(s.name): s.links[0].from_socket for s in node.inputs if s.is_linked}
+    targets = {new_name(s.name): [wire.to_socket for wire in s.links] for s in node.outputs}
+    for wire in [wire for s in (*node.inputs, *node.outputs) for wire in s.links]:
+        tree.links.remove(wire)
+
+    node.node_tree = group
+    defaults = {
+        item.identifier: getattr(item, "default_value", None)
+        for item in group.interface.items_tree
+        if item.item_type == "SOCKET" and item.in_out == "INPUT"
+    }
+    for socket in node.inputs:
+        kind, value = values.get(socket.name, (None, None))
+        if kind != socket.type:
+            value = defaults.get(socket.identifier)
+        if value is not None:
+            socket.default_value = value
+        if socket.name in sources:
+            tree.links.new(sources[socket.name], socket)
+    for socket in node.outputs:
+        for target in targets.get(socket.name, ()):
+            tree.links.new(socket, target)
+    for socket in (*node.inputs, *node.outputs):
+        socket.hide = socket.name in hidden
+    _move_animation(tree, node.name, order, [socket.name for socket in node.inputs])
+    if node.label in ("", before, before.split(".")[0]):
+        node.label = module.NAME
+
+
+def _value(socket):
+    value = getattr(socket, "default_value", None)
+    return tuple(value) if hasattr(value, "__len__") and not isinstance(value, str) else value
+
+
+def _move_animation(tree, name, old, new):
+    """Animation names a socket by its place in the list."""
+    data = tree.animation_data
+    if data is None:
+        return
+    path = re.compile(rf'(nodes\["{re.escape(name)}"\]\.inputs\[)(\d+)(\].*)')
+    for curve in list(_curves(data)):
+        match = path.fullmatch(curve.data_path)
+        if match and int(match[2]) < len(old) and old[int(match[2])] in new:
+            place = new.index(old[int(match[2])])
+            curve.data_path = f"{match[1]}{place}{match[3]}"
+
+
+def _curves(data):
+    yield from data.drivers
+    uses = [(data.action, data.action_slot)]
+    uses += [(s.action, s.action_slot) for track in data.nla_tracks for s in track.strips]
+    seen = set()
+    for action, slot in uses:
+        if action is None or slot is None or (action, slot.identifier) in seen:
+            continue
+        seen.add((action, slot.identifier))
+        for layer in action.layers:
+            for strip in layer.strips:
+                bag = strip.channelbag(slot)
+                if bag:
+                    yield from bag.fcurves
