@@ -3,7 +3,17 @@
 
 import importlib
 
-_NAMES = ("properties", "evaluate", "setup", "show_tension", "versions", "bake", "command", "panel")
+_NAMES = (
+    "properties",
+    "evaluate",
+    "setup",
+    "show_tension",
+    "versions",
+    "apply_preset",
+    "bake",
+    "command",
+    "panel",
+)
 _registered = []
 
 

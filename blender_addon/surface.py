@@ -9,10 +9,14 @@ import json
 from math import pi, sqrt
 
 from . import nodes
-from .nodes import glossy
+from .nodes import conductor, dielectric, glossy
+from .nodes.replace import replace
 
 VERSION = 1
 KEY = "ltmd"  # custom property of every node that is ours: "surface" or "source"
+
+# The groups a set-up material may reflect by, and their socket for the colour of the reflection.
+LOBES = {glossy.NAME: "Color", conductor.NAME: "Base Color", dielectric.NAME: "Coat Tint"}
 
 NOT_CARRIED = (
     "Subsurface Weight",
@@ -28,12 +32,42 @@ def is_set_up(material):
 
 
 def lobe(material):
-    """The LTMD Glossy node, or None."""
+    """The node that reflects, of one of LOBES, or None."""
     for node in material.node_tree.nodes if material.node_tree else ():
-        if KEY in node and node.type == "GROUP" and node.node_tree:
-            if node.node_tree.get(nodes.GROUP_KEY) == glossy.NAME:
-                return node
+        if KEY in node and node.type == "GROUP" and lobe_kind(node) in LOBES:
+            return node
     return None
+
+
+def lobe_kind(node):
+    """Name of the node's group; its twin without OSL counts as the same."""
+    name = node.node_tree.get(nodes.GROUP_KEY, "") if node.node_tree else ""
+    return name.removesuffix(" (no OSL)")
+
+
+def use_lobe(material, module):
+    """Let the set-up material reflect by another group; what has the same name is kept.
+
+    Glossy is mixed with the base by Fresnel's law, a conductor has no base, a dielectric holds it.
+    Raises RuntimeError if the group cannot be made here.
+    """
+    node, tree = lobe(material), material.node_tree
+    colour = LOBES[module.NAME.removesuffix(" (no OSL)")]
+    replace(node, module, {LOBES[lobe_kind(node)]: colour})
+    mine = our_nodes(material, "surface")
+    base = next((n for n in mine if n.type == "BSDF_DIFFUSE"), None)
+    if "Base" in node.inputs and not node.inputs["Base"].is_linked and base:
+        tree.links.new(base.outputs[0], node.inputs["Base"])
+    for wire in list(node.outputs[0].links):
+        mix = wire.to_node
+        if mix.type != "MIX_SHADER" or mix.get(KEY) != "surface":
+            continue
+        for factor in list(mix.inputs[0].links):
+            tree.links.remove(factor)
+        mix.inputs[0].default_value = 1.0
+        weights = [n for n in mine if n.type == "MATH"] or [n for n in mine if n.type == "FRESNEL"]
+        if colour == "Color" and weights:
+            tree.links.new(weights[0].outputs[0], mix.inputs[0])
 
 
 def our_nodes(material, part=None):

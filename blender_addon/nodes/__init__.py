@@ -31,6 +31,11 @@ def ensure(module):
     return tree
 
 
+def without_osl(group):
+    """Is the group one of those made of stock nodes alone?"""
+    return group.get(GROUP_KEY, "").endswith(" (no OSL)")
+
+
 def group_node(tree, module):
     """A new node in `tree` that shows the group."""
     node = tree.nodes.new("ShaderNodeGroup")

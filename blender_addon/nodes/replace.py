@@ -54,6 +54,8 @@ def replace(node, module, renamed=None):
     _move_animation(tree, node.name, order, [socket.name for socket in node.inputs])
     if node.label in ("", before, before.split(".")[0]):
         node.label = module.NAME
+    if before and node.name.split(".")[0] == before.split(".")[0]:
+        node.name = module.NAME
 
 
 def _value(socket):

@@ -46,7 +46,7 @@ bpy.ops.wm.save_as_mainfile(filepath=path)
 bpy.ops.wm.open_mainfile(filepath=path)
 obj, material = bpy.data.objects["Sheet"], bpy.data.materials["M"]
 loaded = render()[2, 2, :3]
-bpy.ops.ltmd.setup(object_name=obj.name, live=True)
+bpy.ops.ltmd.setup(object_name=obj.name)
 again = render()[2, 2, :3]
 shown = false_colour.is_shown(material)
 show(object_name=obj.name)
