@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The node groups, one per file. Each module has NAME, VERSION and build(tree).
+"""The node groups, one per file. Each module has NAME, VERSION and build(tree), those of modifiers
+TREE = "GeometryNodeTree" too.
 
 Socket names never change: materials in saved files are linked by them. A group of another version
 is left alone, so that opening an old file never changes its pictures.
@@ -20,7 +21,7 @@ def ensure(module):
             and tree.get(VERSION_KEY) == module.VERSION
         ):
             return tree
-    tree = bpy.data.node_groups.new(module.NAME, "ShaderNodeTree")
+    tree = bpy.data.node_groups.new(module.NAME, getattr(module, "TREE", "ShaderNodeTree"))
     tree[GROUP_KEY] = module.NAME
     tree[VERSION_KEY] = module.VERSION
     try:
