@@ -23,13 +23,20 @@ MOST_CORNERS = 16
 
 
 def object_matrix(f):
-    """The matrix of the object that has the modifier."""
+    """The matrix of the object that has the modifier, without its mean scale."""
     info = f.node(
         "GeometryNodeObjectInfo",
         {"Object": f.out(f.node("GeometryNodeSelfObject"))},
         transform_space="ORIGINAL",
     )
-    return info.outputs["Transform"]
+    matrix = info.outputs["Transform"]
+    volume = f.math("ABSOLUTE", f.out(f.node("FunctionNodeMatrixDeterminant", {"Matrix": matrix})))
+    unit = f.math("POWER", volume, -1 / 3)
+    scale = f.node("FunctionNodeCombineTransform", {"Scale": f.join(unit, unit, unit)})
+    product = f.node("FunctionNodeMatrixMultiply")
+    f.put(product.inputs[0], matrix)
+    f.put(product.inputs[1], f.out(scale))
+    return f.out(product)
 
 
 def directed(f, vector, matrix):

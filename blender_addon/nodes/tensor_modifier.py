@@ -34,9 +34,7 @@ def build(tree):
     matrix = object_matrix(f)
     inverse = f.out(f.node("FunctionNodeInvertMatrix", {"Matrix": matrix}))
     transposed = f.out(f.node("FunctionNodeTransposeMatrix", {"Matrix": inverse}))
-    determinant = f.out(f.node("FunctionNodeMatrixDeterminant", {"Matrix": matrix}))
-    handedness = f.math("SIGN", determinant)
-    scale = f.math("POWER", f.math("ABSOLUTE", determinant), 1 / 3)
+    handedness = f.out(f.node("FunctionNodeMatrixDeterminant", {"Matrix": matrix}))
 
     # The vertex's normal on the side on which the corners run counter-clockwise.
     normal = f.out(f.node("GeometryNodeInputNormal"), "True Normal")
@@ -46,7 +44,7 @@ def build(tree):
     own = f.vector("NORMALIZE", f.vector("CROSS_PRODUCT", d1, d2))
     axis = f.vector("CROSS_PRODUCT", own, normal)
     cosine = f.vector("DOT_PRODUCT", own, normal)
-    factor = f.math("MULTIPLY", scale, f.math("SQRT", weight))
+    factor = f.math("SQRT", weight)
     sums = None
     for e in (eu, ev):
         e = f.scale(directed(f, _turned(f, e, axis, cosine), inverse), factor)
