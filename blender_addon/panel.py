@@ -28,7 +28,9 @@ def state(obj):
         return "Not set up: highlights ignore the deformation"
     if kind == "LIVE":
         return "Live: the deformation is measured while rendering"
-    return "Texture: the deformation is read from the baked images"
+    if kind == "TEXTURE":
+        return "Texture: the deformation is read from the baked images"
+    return "Measured at every frame by a modifier, smooth, the same throughout a motion blur"
 
 
 def draw(layout, context):
@@ -46,6 +48,10 @@ def draw(layout, context):
         limits = source.live_limits(obj)
         if limits:
             sentence(layout, context, limits, icon="INFO")
+    elif obj.ltmd.source in ("ATTRIBUTE", "TENSOR"):
+        limits = source.modifier_limits(obj)
+        if limits:
+            sentence(layout, context, limits, icon="INFO")
     elif obj.ltmd.source == "TEXTURE":
         limits = source.texture_limits(obj, context.scene.frame_current)
         if limits:
@@ -55,8 +61,8 @@ def draw(layout, context):
 
     row = layout.row(align=True)
     row.operator("ltmd.setup", text="Set Up LTMD").object_name = ""
-    if obj.ltmd.source == "TEXTURE":
-        row.operator("ltmd.setup", text="Measure Live").live = True
+    if obj.ltmd.source not in ("NONE", "LIVE"):
+        row.operator("ltmd.setup", text="Measure Live").source = "LIVE"
     if obj.ltmd.source != "NONE":
         row.operator("ltmd.remove", text="Remove").object_name = ""
 

@@ -14,6 +14,7 @@ import bpy
 import numpy as np
 
 from . import evaluate
+from .nodes import GROUP_KEY
 
 # Modifiers that move points and add none. Everything else stays in the rest state, so that its
 # points are the points of the render.
@@ -131,8 +132,9 @@ def candidates(scene, requests):
     try:
         _like(work, scene)
         for key, (obj, spec, uv_map) in requests.items():
-            for kept in _choices(obj):
-                copies.append((key, kept, uv_map, _rest_copy(work, obj, spec, kept)))
+            for kept in choices(obj):
+                copy = rest_copy(obj, kept, _shape(spec))
+                copies.append((key, kept, uv_map, _link(work, copy)))
             if spec.mode == "object":
                 # A rest object whose modifiers are its own, or applied.
                 shape = bpy.data.objects[spec.object]
@@ -193,11 +195,12 @@ def _like(work, scene):
         setattr(work.render, name, getattr(scene.render, name))
 
 
-def _choices(obj):
+def choices(obj):
+    """The names of the Geometry Nodes modifiers that may stay in the rest state, each choice."""
     nodes = [
         modifier.name
         for modifier in obj.modifiers
-        if modifier.type == "NODES" and modifier.show_render
+        if modifier.type == "NODES" and modifier.show_render and not is_ours(modifier)
     ]
     if len(nodes) > _MOST_NODES:
         return [(), tuple(nodes)]
@@ -206,16 +209,32 @@ def _choices(obj):
     ]
 
 
-def _rest_copy(work, obj, spec, kept):
+def is_ours(modifier):
+    """Is it one of LTMD's own, which only store numbers?"""
+    group = getattr(modifier, "node_group", None)
+    return group is not None and GROUP_KEY in group
+
+
+def _shape(spec):
+    """The object whose mesh is the rest state, or None."""
+    if spec.mode != "object":
+        return None
+    shape = bpy.data.objects.get(spec.object)
+    if shape is None or shape.type != "MESH":
+        raise RestError(f'The rest object "{spec.object}" is not a mesh object of this file')
+    return shape
+
+
+def rest_copy(obj, kept, shape=None):
+    """A copy of the object, not in any scene, with only the modifiers that make geometry.
+
+    kept: the Geometry Nodes modifiers that stay; shape: another object whose mesh it gets.
+    """
     copy = obj.copy()
     if copy.override_library is not None:
         copy.make_local(clear_liboverride=True)
     copy.animation_data_clear()
-    if spec.mode == "object":
-        shape = bpy.data.objects.get(spec.object)
-        if shape is None or shape.type != "MESH":
-            bpy.data.objects.remove(copy)
-            raise RestError(f'The rest object "{spec.object}" is not a mesh object of this file')
+    if shape is not None:
         copy.data = shape.data
     # Basis only: without the pin the keys act before every modifier.
     copy.active_shape_key_index = 0
@@ -227,7 +246,7 @@ def _rest_copy(work, obj, spec, kept):
     for modifier in list(copy.modifiers):
         if modifier.type in DEFORMING or (modifier.type == "NODES" and modifier.name not in kept):
             copy.modifiers.remove(modifier)
-    return _link(work, copy)
+    return copy
 
 
 def _link(work, copy):

@@ -2,9 +2,10 @@
 """The operators Set Up LTMD and Remove LTMD Set-Up."""
 
 import bpy
-from bpy.props import BoolProperty, StringProperty
+from bpy.props import BoolProperty, EnumProperty, StringProperty
 
-from . import false_colour, nodes, source, surface
+from . import false_colour, modifier, nodes, source, surface
+from .properties import SOURCES
 from .writable import REFUSAL, is_writable
 
 
@@ -53,10 +54,10 @@ def target_objects(context, name):
     return meshes
 
 
-def set_up(obj, live=False):
+def set_up(obj, kind="PRESENT"):
     """Set up one object; return sentences for the user. Raises SourceError.
 
-    live: also turn a material that reads baked images back to measuring live.
+    kind: the source; PRESENT keeps the one the object has, and is live on a new one.
     """
     if not is_writable(obj):
         raise source.SourceError(f"{obj.name}: {REFUSAL}")
@@ -65,8 +66,10 @@ def set_up(obj, live=False):
             "This Blender is built without Open Shading Language, which LTMD materials need; "
             "the builds of blender.org have it"
         )
-    told = source.store_rest(obj)
-    textures = obj.ltmd.source == "TEXTURE" and not live
+    if kind == "PRESENT":
+        kind = "LIVE" if obj.ltmd.source == "NONE" else obj.ltmd.source
+    textures = kind == "TEXTURE"
+    told = source.measure(obj, "LIVE" if textures else kind)
     if not any(slot.material for slot in obj.material_slots):
         _new_material(obj)
     for material in list(dict.fromkeys(s.material for s in obj.material_slots if s.material)):
@@ -79,8 +82,8 @@ def set_up(obj, live=False):
                 continue
         else:
             told += surface.add(material)
-        source.switch_to_live(obj, material)
-    obj.ltmd.source = "TEXTURE" if textures else "LIVE"
+        told += source.switch(obj, material, "LIVE" if textures else kind)
+    obj.ltmd.source = kind
     return told
 
 
@@ -109,6 +112,7 @@ def remove(obj):
 
 def _forget(obj):
     obj.ltmd.source = "NONE"
+    modifier.remove(obj)
     mesh = obj.data
     shared = any(o.data == mesh and o.ltmd.source == "LIVE" for o in bpy.data.objects)
     if is_writable(mesh) and not shared:
@@ -184,10 +188,14 @@ class LTMD_OT_setup(OnObjects, bpy.types.Operator):
         default=True,
     )
 
-    live: BoolProperty(
-        name="Measure Live",
-        description="Turn materials that read baked images back to measuring while rendering",
-        default=False,
+    source: EnumProperty(
+        name="Source",
+        description="Where the highlights get the deformation from",
+        items=(
+            ("PRESENT", "Present", "As it is; live on an object that is not set up"),
+            *(item for item in SOURCES if item[0] in source.GROUPS),
+        ),
+        default="PRESENT",
         options={"SKIP_SAVE"},
     )
 
@@ -203,7 +211,7 @@ class LTMD_OT_setup(OnObjects, bpy.types.Operator):
         return self.execute(context)
 
     def work(self, obj):
-        return set_up(obj, self.live)
+        return set_up(obj, self.source)
 
     def after(self, context, done):
         scene = context.scene

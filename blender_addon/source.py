@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where a set-up material gets the tension from: live, or baked images."""
+"""Where a set-up material gets the tension from: live, a modifier, or baked images."""
 
 import bpy
 import numpy as np
 
-from . import nodes, surface
-from .nodes import live_tension, texture_tension
+from . import modifier, nodes, rest_state, surface
+from .nodes import attribute_tension, live_tension, tensor_tension, texture_tension
 from .nodes.rest_positions import REST_ATTRIBUTE
 from .writable import is_writable
 
@@ -25,6 +25,10 @@ FRAMES_KEY = "ltmd_frames"  # of an Image Texture node: first and last baked fra
 COPYING = {"ARRAY", "EDGE_SPLIT", "MASK", "MIRROR", "NODES", "TRIANGULATE"}
 
 
+# The group that gives the tension, for the sources measured at every frame.
+GROUPS = {"LIVE": live_tension, "ATTRIBUTE": attribute_tension, "TENSOR": tensor_tension}
+
+
 class SourceError(Exception):
     """The source cannot be used; str() says why and what to do."""
 
@@ -34,21 +38,40 @@ def needs_generated(obj):
     return any(m.show_render and m.type not in MOVING | COPYING for m in obj.modifiers)
 
 
+def _geometry_nodes(obj):
+    """Does Geometry Nodes, other than ours, change the object in renders?"""
+    return any(
+        m.show_render and m.type == "NODES" and not rest_state.is_ours(m) for m in obj.modifiers
+    )
+
+
+def _needs_modifier(obj):
+    """Must a modifier bring the rest positions to live tension?
+
+    Generated coordinates are the basis, and behind deforming Geometry Nodes not even that.
+    """
+    return needs_generated(obj) and (obj.ltmd.rest_mode != "BASIS" or _geometry_nodes(obj))
+
+
 def live_limits(obj):
     """What live tension cannot do on this object, as a sentence, or None."""
+    if modifier.find(obj):
+        return modifier.limits(obj)
     if not needs_generated(obj):
         stale = REST_ATTRIBUTE not in obj.data.attributes
         if stale and obj.ltmd.source == "LIVE":
             return "Viewport: shown at rest, as the rest state is not stored in the mesh"
         return None
-    if any(m.show_render and m.type == "NODES" for m in obj.modifiers):
-        return (
-            "Geometry Nodes and subdivision together hide the rest state from live tension: "
-            "bake the tension for this object"
-        )
-    if REST_ATTRIBUTE in obj.data.attributes:
+    if _needs_modifier(obj) or REST_ATTRIBUTE in obj.data.attributes:
         return "The modifiers have changed: press Set Up LTMD again"
     return "The deformation shows in final renders; the viewport shows this object at rest"
+
+
+def modifier_limits(obj):
+    """What the attribute and the tensor source cannot show on this object, or None."""
+    if obj.ltmd.source == "ATTRIBUTE" and not obj.data.uv_layers:
+        return "The mesh has no UV map: choose the Tensor source"
+    return modifier.limits(obj)
 
 
 def texture_limits(obj, frame):
@@ -92,35 +115,66 @@ def _basis(mesh):
 
 
 def _positions_at(obj, frame):
+    """The mesh's own vertices as the deforming modifiers leave them at the frame."""
+    moving = MOVING | rest_state.DEFORMING | {"NODES"}
+    making = [m for m in obj.modifiers if m.type not in moving and m.show_viewport]
+    after = obj.modifiers[obj.modifiers.find(making[0].name) :] if making else ()
+    if any(m.type in rest_state.DEFORMING and m.show_viewport for m in after):
+        raise SourceError(
+            f"{obj.name}: a frame as rest state needs the deforming modifiers before "
+            f"{making[0].name}; move them up, or bake the tension"
+        )
     scene = bpy.context.scene
     now = scene.frame_current
     try:
+        for m in making:
+            m.show_viewport = False
         scene.frame_set(frame)
         evaluated = obj.evaluated_get(bpy.context.evaluated_depsgraph_get()).data
         positions = np.empty(len(evaluated.vertices) * 3, np.float32)
         evaluated.vertices.foreach_get("co", positions)
     finally:
+        for m in making:
+            m.show_viewport = True
         scene.frame_set(now)
     return positions.reshape(-1, 3)
 
 
-def store_rest(obj):
-    """Store or clear the rest attribute as the object needs; return sentences for the user."""
+def measure(obj, kind):
+    """Let the object have what the source needs of it; return sentences for the user.
+
+    kind: one of GROUPS. Raises SourceError.
+    """
+    if kind == "LIVE":
+        return _store_rest(obj)
+    uv_map = obj.ltmd.uv_map or rest_state.default_uv_map(obj.data)
+    if kind == "ATTRIBUTE" and uv_map not in obj.data.uv_layers:
+        raise SourceError(
+            f"{obj.name}: the Attribute source needs a UV map; unwrap the mesh, or choose Tensor"
+        )
+    modifier.add(obj, kind, rest_positions(obj), uv_map)
+    if is_writable(obj.data):
+        clear_rest(obj.data)
+    limit = modifier.limits(obj)
+    return [f"{obj.name}: {limit}"] if limit else []
+
+
+def _store_rest(obj):
+    """Bring the rest positions to the object as it needs them."""
     mesh = obj.data
+    if _needs_modifier(obj):
+        modifier.add(obj, "LIVE", rest_positions(obj))
+        limit = modifier.limits(obj)
+        return [f"{obj.name}: {limit}"] if limit else []
+    modifier.remove(obj)
     if needs_generated(obj):
-        if obj.ltmd.rest_mode != "BASIS":
-            raise SourceError(
-                f"{obj.name}: with subdivision, live tension measures from the basis only; choose "
-                "the basis as rest state, or bake the tension"
-            )
         if is_writable(mesh):
             clear_rest(mesh)
         return [f"{obj.name}: {live_limits(obj)}"]
     if not is_writable(mesh):
         if obj.ltmd.rest_mode != "BASIS":
-            raise SourceError(
-                f"{obj.name}: linked mesh data cannot store a rest state; bake instead"
-            )
+            modifier.add(obj, "LIVE", rest_positions(obj))
+            return []
         return [f"{obj.name}: the deformation shows in final renders only"]
     positions = rest_positions(obj)
     attribute = mesh.attributes.get(REST_ATTRIBUTE)
@@ -173,21 +227,34 @@ def assign(obj, old, new):
             slot.material = new
 
 
-def switch_to_live(obj, material):
-    """Measure while rendering; return sentences for the user. Raises SourceError."""
-    told = store_rest(obj)
-    if surface.is_set_up(material):
-        tree = material.node_tree
-        _clear(material)
-        lobe, box = surface.lobe(material), surface.frame(material)
-        uv = surface.own(tree.nodes.new("ShaderNodeUVMap"), "source", box)
-        uv.uv_map = obj.ltmd.uv_map
-        tension = surface.own(nodes.group_node(tree, live_tension), "source", box)
-        _place(lobe, tension, uv)
-        tree.links.new(uv.outputs["UV"], tension.inputs["UV"])
-        _connect(tree, tension, lobe)
-    obj.ltmd.source = "LIVE"
+def switch(obj, material, kind):
+    """Wire a set-up material to a source in GROUPS; return sentences for the user.
+
+    A material that other objects show with another source becomes a copy for obj.
+    """
+    told = []
+    others = [other.name for other in users(material) if other.ltmd.source not in (kind, "NONE")]
+    others = [name for name in others if name != obj.name]
+    if others:
+        shared, material = material, own_copy(obj, material)
+        told.append(_told_of_copy(obj, shared, others))
+    tree = material.node_tree
+    _clear(material)
+    lobe, box = surface.lobe(material), surface.frame(material)
+    uv = surface.own(tree.nodes.new("ShaderNodeUVMap"), "source", box)
+    uv.uv_map = obj.ltmd.uv_map
+    tension = surface.own(nodes.group_node(tree, GROUPS[kind]), "source", box)
+    _place(lobe, tension, uv)
+    tree.links.new(uv.outputs["UV"], tension.inputs["UV"])
+    _connect(tree, tension, lobe)
     return told
+
+
+def _told_of_copy(obj, shared, others):
+    return (
+        f"{obj.name} has its own copy of {shared.name} now, as its source is its own; "
+        f"{', '.join(others)} keep{'s' if len(others) == 1 else ''} {shared.name}"
+    )
 
 
 def switch_to_texture(obj, material, files):
@@ -204,10 +271,7 @@ def switch_to_texture(obj, material, files):
     others = [other.name for other in users(material) if other != obj]
     if others:
         shared, material = material, own_copy(obj, material)
-        told.append(
-            f"{obj.name} has its own copy of {shared.name} now, as the images are its own; "
-            f"{', '.join(others)} keep{'s' if len(others) == 1 else ''} {shared.name}"
-        )
+        told.append(_told_of_copy(obj, shared, others))
     tree = material.node_tree
     _clear(material)
     lobe, box = surface.lobe(material), surface.frame(material)
@@ -240,6 +304,7 @@ def switch_to_texture(obj, material, files):
         previous = tension
     if previous:
         _connect(tree, previous, lobe)
+    modifier.remove(obj)
     obj.ltmd.source = "TEXTURE"
     return told
 

@@ -463,7 +463,7 @@ source.switch_to_texture(a, own, files)  # again: replaced, not doubled
 again = len(surface.our_nodes(own, "source")), len(bpy.data.images)
 bpy.ops.ltmd.setup(object_name="A")  # set-up alone keeps the baked images
 assert a.ltmd.source == "TEXTURE"
-bpy.ops.ltmd.setup(object_name="A", live=True)
+bpy.ops.ltmd.setup(object_name="A", source="LIVE")
 live = len(bpy.data.images), a.ltmd.source
 source.switch_to_texture(a, own, files)
 bpy.ops.ltmd.remove(object_name="A")
