@@ -4,8 +4,9 @@
 // GTR as few GGX and Beckmann lobes, each of which a closure renders; and their masking under the
 // linear map of the surface.
 //
-// Everything is written out per lobe, in scalars and without loops: so the renderer folds the fit
-// into constants wherever Roughness and Tail are not textured.
+// Everything is written out per lobe, in scalars that are assigned once, without loops and early
+// returns: so the renderer folds the fit into constants wherever Roughness and Tail are not
+// textured, and drops unused lobes.
 
 #include "ltmd_lobe_table.h"
 #include "ltmd_surface.h"
@@ -69,54 +70,56 @@ float ltmd_cubic_at(float table[], int at, int step, float a0, float a1, float a
 
 // GTR of the given alpha and gamma (0 to 4) as `count` lobes, with weights that add up to 1: the
 // fit of ltmd.fit_lobes, continuous in alpha and gamma. Below alpha = 1e-4 the fit is that of 1e-4.
-LtmdLobes ltmd_fit_lobes(float table[], float alpha, float gamma_unbounded, int count)
+void ltmd_fit_lobes(float table[], float alpha, float unbounded_gamma, int count,
+                    output LtmdLobes lobes)
 {
-    LtmdLobes lobes = { 6, alpha, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0 };
-    float gamma = clamp(gamma_unbounded, 0.0, 4.0);
-    if (gamma != 2 && alpha < 1) {
-        int beyond = gamma > 2;
-        int n = count;
-        float log_alpha2 = 2 * log(max(alpha, 1e-4));
-        float most = -2 * log(1e-4);
-        float x = beyond ? -log_alpha2 / (3 - log_alpha2) * (most + 3) / most : -log_alpha2 / most;
-        x *= LTMD_LOBE_TABLE_ALPHA_STEPS;
-        float y = 4 * (gamma - (beyond ? 2 : 0));
-        int first_x = clamp((int)x - 1, 0, LTMD_LOBE_TABLE_ALPHA_STEPS - 3);
-        int first_y = clamp((int)y - 1, 0, LTMD_LOBE_TABLE_GAMMA_STEPS - 3);
-        float a0, a1, a2, a3, g0, g1, g2, g3;
-        ltmd_cubic(x - first_x, a0, a1, a2, a3);
-        ltmd_cubic(y - first_y, g0, g1, g2, g3);
-        int column = 2 * n;
-        int row = (LTMD_LOBE_TABLE_GAMMA_STEPS + 1) * column;
-        int start = LTMD_LOBE_TABLE_LOBE * ((beyond ? 15 : 0) + n * (n - 1) / 2) + first_x * row +
-                    first_y * column;
-        float sum = 0;
+    float gamma = clamp(unbounded_gamma, 0.0, 4.0);
+    int beyond = gamma > 2;
+    // A GGX lobe, whatever the count.
+    int single = (gamma == 2) + (alpha >= 1);
+    int n = single ? 1 : count;
+    float log_alpha2 = 2 * log(max(alpha, 1e-4));
+    float most = -2 * log(1e-4);
+    float x = beyond ? -log_alpha2 / (3 - log_alpha2) * (most + 3) / most : -log_alpha2 / most;
+    x *= LTMD_LOBE_TABLE_ALPHA_STEPS;
+    float y = 4 * (gamma - (beyond ? 2 : 0));
+    int first_x = clamp((int)x - 1, 0, LTMD_LOBE_TABLE_ALPHA_STEPS - 3);
+    int first_y = clamp((int)y - 1, 0, LTMD_LOBE_TABLE_GAMMA_STEPS - 3);
+    float a0, a1, a2, a3, g0, g1, g2, g3;
+    ltmd_cubic(x - first_x, a0, a1, a2, a3);
+    ltmd_cubic(y - first_y, g0, g1, g2, g3);
+    int column = 2 * n;
+    int row = (LTMD_LOBE_TABLE_GAMMA_STEPS + 1) * column;
+    int start = LTMD_LOBE_TABLE_LOBE * ((beyond ? 15 : 0) + n * (n - 1) / 2) + first_x * row +
+                first_y * column;
+    // How the weights vanish at the borders.
+    float first_factor = !beyond && n > 1 ? 2 - gamma : 1.0;
+    float last_factor = beyond ? (gamma - 2) * (1 - alpha) * (1 + alpha) : gamma;
+    float inner_factor = beyond ? last_factor : last_factor * (2 - gamma);
 
 #define LTMD_TABLE_ROW(at) ltmd_cubic_at(table, at, column, g0, g1, g2, g3)
 #define LTMD_TABLE_VALUE(at)                                                                      \
     (a0 * LTMD_TABLE_ROW(at) + a1 * LTMD_TABLE_ROW(at + row) +                                    \
      a2 * LTMD_TABLE_ROW(at + 2 * row) + a3 * LTMD_TABLE_ROW(at + 3 * row))
-// The factor is how the weights vanish at the borders.
 #define LTMD_FIT_LOBE(i)                                                                          \
-    if (i < n) {                                                                                  \
+    float share##i = 0;                                                                           \
+    lobes.alpha##i = 0;                                                                           \
+    if (i < n && !single) {                                                                       \
         float place = LTMD_TABLE_VALUE(start + i);                                                \
-        float factor = 1;                                                                         \
-        if (beyond && i > 0)                                                                      \
-            factor = (gamma - 2) * (1 - alpha) * (1 + alpha);                                     \
-        if (!beyond && n > 1)                                                                     \
-            factor = (i > 0 ? gamma : 1.0) * (i + 1 < n ? 2 - gamma : 1.0);                       \
-        lobes.weight##i = factor * exp(LTMD_TABLE_VALUE(start + n + i));                          \
+        share##i = exp(LTMD_TABLE_VALUE(start + n + i)) *                                         \
+                   (i == 0 ? first_factor : (i + 1 < n ? inner_factor : last_factor));            \
         lobes.alpha##i = exp((beyond ? log_alpha2 + place                                         \
                                      : log_alpha2 * clamp(place, 0.0, 1.0)) / 2);                 \
-        sum += lobes.weight##i;                                                                   \
     }
-        LTMD_EACH_LOBE(LTMD_FIT_LOBE)
-        if (beyond)
-            lobes.ggx = 1;
-#define LTMD_NORMALISE_LOBE(i) lobes.weight##i /= sum;
-        LTMD_EACH_LOBE(LTMD_NORMALISE_LOBE)
+    LTMD_EACH_LOBE(LTMD_FIT_LOBE)
+    if (single) {
+        share0 = 1;
+        lobes.alpha0 = alpha;
     }
-    return lobes;
+    lobes.ggx = beyond ? 1 : 6;
+#define LTMD_NORMALISE_LOBE(i) lobes.weight##i = share##i * inverse;
+    float inverse = 1 / (share0 + share1 + share2 + share3 + share4 + share5);
+    LTMD_EACH_LOBE(LTMD_NORMALISE_LOBE)
 }
 
 // 2 v_z (1 + Lambda(v)) of a GGX lobe; across = alpha tan(theta) v_z.
@@ -129,71 +132,63 @@ float ltmd_ggx_area(float z, float across)
 // eq. 69): so the sum of closures passes the weak white furnace as well as a single one.
 float ltmd_beckmann_area(float z, float across)
 {
-    float area = 2 * z;
-    if (z < 1.6 * across) {
-        float a = z / across;
-        area += 2 * across * (1 - 1.259 * a + 0.396 * a * a) / (3.535 + 2.181 * a);
-    }
-    return area;
+    float a = min(z / max(across, 1e-9), 1.6);
+    return 2 * z + 2 * across * (1 - 1.259 * a + 0.396 * a * a) / (3.535 + 2.181 * a);
 }
 
 // Turns the weights, shares of the slope distribution, into shares of the area that is visible from
 // the viewer: w_i (1 + Lambda_i) / (1 + Lambda), with Smith's Lambda = sum of w_i Lambda_i.
 void ltmd_visible_weights(LtmdSurface surface, output LtmdLobes lobes)
 {
-    if (lobes.weight0 < 1) {
-        float z, across;
-        ltmd_view(surface, z, across);
-        float sum = 0;
+    float z, across;
+    ltmd_view(surface, z, across);
 #define LTMD_VISIBLE_LOBE(i)                                                                      \
-    if (lobes.weight##i > 0) {                                                                    \
-        lobes.weight##i *= i < lobes.ggx ? ltmd_ggx_area(z, lobes.alpha##i * across)              \
-                                         : ltmd_beckmann_area(z, lobes.alpha##i * across);        \
-        sum += lobes.weight##i;                                                                   \
-    }
-        LTMD_EACH_LOBE(LTMD_VISIBLE_LOBE)
-        LTMD_EACH_LOBE(LTMD_NORMALISE_LOBE)
-    }
+    float share##i = 0;                                                                           \
+    if (lobes.weight##i > 0)                                                                      \
+        share##i = lobes.weight##i *                                                              \
+                   (i < lobes.ggx ? ltmd_ggx_area(z, lobes.alpha##i * across)                     \
+                                  : ltmd_beckmann_area(z, lobes.alpha##i * across));
+    LTMD_EACH_LOBE(LTMD_VISIBLE_LOBE)
+    float inverse = 1 / (share0 + share1 + share2 + share3 + share4 + share5);
+    LTMD_EACH_LOBE(LTMD_NORMALISE_LOBE)
 }
 
 // One of the lobes, with its weight as probability, in the place of all.
 void ltmd_pick_lobe(output LtmdLobes lobes)
 {
-    if (lobes.weight0 < 1) {
-        // P is another for each camera sample and each bounce.
-        float u = hashnoise(P, time);
-        int picked = 0;
-        float edge = lobes.weight0;
-        float alpha = lobes.alpha0;
+    // P is another for each camera sample and each bounce.
+    float u = hashnoise(P, time);
+    int picked = 0;
+    float edge = lobes.weight0;
+    float alpha = lobes.alpha0;
 #define LTMD_PICK_LOBE(i)                                                                         \
     if (u >= edge && lobes.weight##i > 0) {                                                       \
         picked = i;                                                                               \
         alpha = lobes.alpha##i;                                                                   \
     }                                                                                             \
     edge += lobes.weight##i;
-        LTMD_PICK_LOBE(1) LTMD_PICK_LOBE(2) LTMD_PICK_LOBE(3) LTMD_PICK_LOBE(4) LTMD_PICK_LOBE(5)
-        lobes.ggx = picked < lobes.ggx;
-        lobes.alpha0 = alpha;
-        lobes.weight0 = 1;
-        lobes.weight1 = 0;
-        lobes.weight2 = 0;
-        lobes.weight3 = 0;
-        lobes.weight4 = 0;
-        lobes.weight5 = 0;
-    }
+    LTMD_PICK_LOBE(1) LTMD_PICK_LOBE(2) LTMD_PICK_LOBE(3) LTMD_PICK_LOBE(4) LTMD_PICK_LOBE(5)
+    lobes.ggx = picked < lobes.ggx;
+    lobes.alpha0 = alpha;
+    lobes.weight0 = 1;
+    lobes.weight1 = 0;
+    lobes.weight2 = 0;
+    lobes.weight3 = 0;
+    lobes.weight4 = 0;
+    lobes.weight5 = 0;
 }
 
 // The lobes of a material, with their closures' weights; mode 1 leaves one of them. `most`: how many
 // closures of its kind fit into the GPU's closure stack beside the rest of a material.
-LtmdLobes ltmd_material_lobes(LtmdSurface surface, float table[], float alpha, float gamma,
-                              int lobes_wanted, int mode, int most)
+void ltmd_material_lobes(LtmdSurface surface, float table[], float alpha, float gamma,
+                         int lobes_wanted, int mode, int most, output LtmdLobes lobes)
 {
-    LtmdLobes lobes =
-        ltmd_fit_lobes(table, alpha, gamma, ltmd_lobe_count(lobes_wanted, alpha, gamma, most));
-    ltmd_visible_weights(surface, lobes);
-    if (mode == 1)
-        ltmd_pick_lobe(lobes);
-    return lobes;
+    ltmd_fit_lobes(table, alpha, gamma, ltmd_lobe_count(lobes_wanted, alpha, gamma, most), lobes);
+    if (lobes.weight0 < 1) {
+        ltmd_visible_weights(surface, lobes);
+        if (mode == 1)
+            ltmd_pick_lobe(lobes);
+    }
 }
 
 // Arguments of a lobe's closure.

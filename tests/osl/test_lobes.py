@@ -19,7 +19,8 @@ shader probe(
 {
     int i = (int)floor(P[0]), j = (int)floor(P[1]);
     float alpha = exp(log(1e-4) * i / 15), gamma = 4.0 * j / 15;
-    LtmdLobes l = ltmd_fit_lobes(LobeTable, alpha, gamma, ltmd_lobe_count(Count, alpha, gamma, 5));
+    LtmdLobes l;
+    ltmd_fit_lobes(LobeTable, alpha, gamma, ltmd_lobe_count(Count, alpha, gamma, 5), l);
     if (Part == 0) Value = color(l.alpha0, l.alpha1, l.alpha2);
     if (Part == 1) Value = color(l.alpha3, l.alpha4, l.alpha5);
     if (Part == 2) Value = color(l.weight0, l.weight1, l.weight2);
