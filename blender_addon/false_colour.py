@@ -10,12 +10,6 @@ from .nodes import tension_view, tension_view_no_osl
 
 PART = "view"  # of surface.KEY
 
-MODES = (
-    ("MAGNITUDE", "Magnitude", "The largest and the smallest stretch of any direction", 0),
-    ("AREA", "Area", "How much the area has grown or shrunk", 1),
-    ("DIRECTIONS", "Directions", "Strokes along the direction that is stretched most", 2),
-)
-
 
 def views(material):
     """The nodes with the false colours."""
@@ -26,8 +20,22 @@ def is_shown(material):
     return surface.is_set_up(material) and bool(views(material))
 
 
+def legend(view):
+    """What the colours mean, in words."""
+    mode, limit = view.inputs["Mode"].default_value, view.inputs["Range"].default_value
+    what = "area" if mode == 1 else "length"
+    words = f"Grey: as at rest. Red: {limit:g} times the {what}. Blue: {1 / limit:.0%} of it."
+    if mode != 1:
+        words += " Purple: both, across each other."
+    if mode == 2 and nodes.without_osl(view.node_tree):
+        words += " Strokes need Open Shading Language."
+    elif mode == 2:
+        words += " Strokes lie along the largest stretch."
+    return words
+
+
 def show(material, mode=0, limit=2.0, osl=True):
-    """Show the tension; mode: number in MODES, limit: stretch of full colour."""
+    """Show the tension; mode: number in properties.VIEWS, limit: stretch of full colour."""
     tree = material.node_tree
     measured = next(
         (

@@ -5,7 +5,7 @@ import textwrap
 
 import bpy
 
-from . import library, setup, source, surface
+from . import false_colour, library, setup, source, surface, versions
 from .writable import REFUSAL, is_writable
 
 
@@ -66,17 +66,86 @@ def draw(layout, context):
     if obj.ltmd.source != "NONE":
         row.operator("ltmd.remove", text="Remove").object_name = ""
 
-    for material in source.materials(obj):
-        lobe = surface.lobe(material)
-        if lobe is None:
-            continue
-        column = layout.column(align=True)
-        column.label(text=material.name, icon="MATERIAL")
-        for name in ("Roughness", "Stretch", "Rotation", "Strength", "Height Response"):
-            socket = lobe.inputs[name]
-            if not socket.is_linked:
-                # The whole of "Height Response" does not fit beside its field.
-                column.prop(socket, "default_value", text=name.removesuffix(" Response"))
+    draw_older(layout, context)
+    material = shown_material(obj)
+    if material is not None:
+        draw_material(layout, context, material)
+        draw_tension(layout, context, material)
+
+
+def draw_older(layout, context):
+    """Groups that an older version of the extension made."""
+    if versions.older_groups():
+        words = "Some LTMD nodes of this file are of an older version and look as they did"
+        sentence(layout, context, words, icon="INFO")
+        layout.operator("ltmd.update_nodes")
+
+
+def shown_material(obj):
+    """The active material if it is set up, otherwise the first one that is."""
+    found = source.materials(obj)
+    active = obj.active_material
+    return active if active in found else next(iter(found), None)
+
+
+def sliders(column, node, names):
+    """The inputs that no node feeds."""
+    for name in names:
+        socket = node.inputs.get(name)
+        if socket is not None and not socket.is_linked:
+            # The whole of "Height Response" does not fit beside its field.
+            column.prop(socket, "default_value", text=name.removesuffix(" Response"))
+
+
+def draw_material(layout, context, material):
+    node = surface.lobe(material)
+    if node is None:
+        return
+    header = layout.row()
+    header.label(text=material.name, icon="MATERIAL")
+    if material == context.object.active_material:
+        header.operator_menu_enum("ltmd.preset", "preset", text="Preset")
+    settings = material.ltmd
+    body = layout.column()
+    body.enabled = is_writable(material)
+    if "Conductor Type" in node.inputs:
+        body.prop(settings, "conductor_type")
+        by_colour = settings.conductor_type == "COLOUR"
+        names = ("Base Color", "Edge Tint") if by_colour else ("IOR", "Extinction")
+        sliders(body.column(align=True), node, names)
+    elif "Coat Tint" in node.inputs:
+        sliders(body.column(align=True), node, ("Coat Tint", "IOR"))
+    column = body.column(align=True)
+    sliders(column, node, ("Roughness", "Tail"))
+    column = body.column(align=True)
+    sliders(column, node, ("Stretch", "Rotation", "Shear"))
+    column = body.column(align=True)
+    sliders(column, node, ("Strength", "Height Response"))
+    words = surface.roughest(node)
+    if words:
+        sentence(layout, context, words, icon="INFO")
+    header, body = layout.panel("LTMD_quality", default_closed=True)
+    header.label(text="Quality")
+    if body:
+        body.enabled = is_writable(material)
+        if "Mode" in node.inputs and not node.inputs["Mode"].is_linked:
+            body.prop(settings, "mode")
+        sliders(body.column(align=True), node, ("Lobes", "Preserve Energy", "Roughness Is Alpha"))
+
+
+def draw_tension(layout, context, material):
+    shown = false_colour.is_shown(material)
+    row = layout.row()
+    row.operator("ltmd.show_tension", depress=shown, icon="COLOR").object_name = ""
+    if not shown:
+        return
+    view = false_colour.views(material)[0]
+    layout.prop(material.ltmd, "view")
+    column = layout.column(align=True)
+    column.prop(view.inputs["Range"], "default_value", text="Full Colour At")
+    if material.ltmd.view == "DIRECTIONS":
+        column.prop(view.inputs["Density"], "default_value", text="Strokes")
+    sentence(layout, context, false_colour.legend(view))
 
 
 def draw_bake(layout, context):

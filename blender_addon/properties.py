@@ -4,6 +4,9 @@
 import bpy
 from bpy.props import BoolProperty, EnumProperty, IntProperty, PointerProperty, StringProperty
 
+from . import false_colour, surface
+from .writable import is_writable
+
 OVERRIDABLE = {"LIBRARY_OVERRIDABLE"}
 
 SOURCES = (
@@ -27,6 +30,53 @@ PASS_ITEMS = (
     ("ALPHA2", "Alpha²", "The deformed highlight as a matrix, for other renderers", 8),
     ("ROUGHNESS", "Roughness", "The deformed highlight as two roughnesses and a direction", 16),
 )
+
+
+CONDUCTOR_TYPES = (
+    ("COLOUR", "Colour", "The metal's colour straight on and near the outline", 0),
+    ("MEASURED", "Measured", "Index of refraction and extinction, as metals are measured", 1),
+)
+
+MODES = (
+    ("ALL", "All Highlights", "Add up the highlights that shape the tail", 0),
+    ("RANDOM", "One at Random", "Take one at random: the same picture with more noise", 1),
+    ("REFERENCE", "Reference", "Random microfacets: exact and very noisy, for comparisons", 2),
+)
+
+VIEWS = (
+    ("MAGNITUDE", "Magnitude", "The largest and the smallest stretch of any direction", 0),
+    ("AREA", "Area", "How much the area has grown or shrunk", 1),
+    ("DIRECTIONS", "Directions", "Strokes along the direction that is stretched most", 2),
+)
+
+
+def _numbered(name, description, items, sockets):
+    """Words for an Int socket; sockets(material): those that follow the choice."""
+
+    def get(self):
+        found = next(iter(sockets(self.id_data)), None)
+        return min(max(found.default_value, 0), len(items) - 1) if found else 0
+
+    def choose(self, number):
+        if is_writable(self.id_data):
+            for socket in sockets(self.id_data):
+                socket.default_value = number
+
+    return EnumProperty(
+        name=name, description=description, items=items, get=get, set=choose, options=set()
+    )
+
+
+def _of_lobe(name):
+    def sockets(material):
+        node = surface.lobe(material)
+        return [node.inputs[name]] if node and name in node.inputs else []
+
+    return sockets
+
+
+def _of_views(material):
+    return [view.inputs["Mode"] for view in false_colour.views(material)]
 
 
 def _is_mesh(_self, obj):
@@ -144,6 +194,14 @@ class LtmdMaterialSettings(bpy.types.PropertyGroup):
         default=False,
         options={"HIDDEN"},
     )
+    # Not stored: words for numbers in the node tree.
+    conductor_type: _numbered(
+        "Metal", "What gives the metal's colour", CONDUCTOR_TYPES, _of_lobe("Conductor Type")
+    )
+    mode: _numbered(
+        "Mode", "How the highlights that shape the tail are rendered", MODES, _of_lobe("Mode")
+    )
+    view: _numbered("View", "What the false colours show", VIEWS, _of_views)
 
 
 CLASSES = (LtmdObjectSettings, LtmdMaterialSettings)

@@ -5,6 +5,7 @@ import bpy
 from bpy.props import EnumProperty, FloatProperty
 
 from . import false_colour, nodes, setup, source
+from .properties import VIEWS
 from .writable import REFUSAL, is_local
 
 
@@ -28,7 +29,7 @@ class LTMD_OT_show_tension(setup.OnObjects, bpy.types.Operator):
     mode: EnumProperty(
         name="View",
         description="What the colours show",
-        items=false_colour.MODES,
+        items=VIEWS,
         default="MAGNITUDE",
     )
     range: FloatProperty(
@@ -48,7 +49,7 @@ class LTMD_OT_show_tension(setup.OnObjects, bpy.types.Operator):
                 raise source.SourceError(f"{material.name} is linked from another file: {REFUSAL}")
         for material in chosen:
             if self.wanted:
-                number = next(item[3] for item in false_colour.MODES if item[0] == self.mode)
+                number = next(item[3] for item in VIEWS if item[0] == self.mode)
                 false_colour.show(material, number, self.range, setup.osl_status(bpy.context)[0])
             else:
                 false_colour.hide(material)

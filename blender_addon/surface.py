@@ -45,6 +45,33 @@ def lobe_kind(node):
     return name.removesuffix(" (no OSL)")
 
 
+def roughest(node):
+    """Where the highlight reaches the roughness at which Cycles ends, as a sentence, or None."""
+    inputs = node.inputs
+    names = ("Roughness", "Roughness Is Alpha", "Stretch", "Shear", "Strength", "Height Response")
+    if any(name not in inputs or inputs[name].is_linked for name in names):
+        return None
+    rough, exact, stretch, shear, strength, response = (inputs[n].default_value for n in names)
+    # alpha over the smaller singular value of [[1, shear], [0, 1]] M_s, whose determinant is 1.
+    sx = 1 + stretch if stretch < 0 else 1 / (1 - stretch)
+    half = (sx * sx + (1 + shear * shear) / (sx * sx)) / 2
+    widest = (rough if exact else rough * rough) * sqrt(half + sqrt(max(half * half - 1, 0)))
+    if widest >= 1:
+        return (
+            "Already at rest the highlight is wider in one direction than Cycles can show: lower "
+            "Roughness or Stretch"
+        )
+    # A squeeze to the part q of the length multiplies alpha by q^(-strength (1 + response)).
+    power = strength * (1 + response)
+    squeeze = widest ** (1 / power) if power > 0 else 0
+    if squeeze < 1 / 3:
+        return None
+    return (
+        f"Squeezed below {squeeze:.0%} of its length, the surface gets no duller: the roughness of "
+        "Cycles ends there"
+    )
+
+
 def use_lobe(material, module):
     """Let the set-up material reflect by another group; what has the same name is kept.
 

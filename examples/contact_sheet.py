@@ -61,6 +61,23 @@ def compose(sheet):
     return picture
 
 
+def grid(sheet):
+    """Captioned cells, left to right and down."""
+    pictures = [Image.open(path).convert("RGBA") for _, path in sheet["cells"]]
+    width, height = pictures[0].size
+    height += 30
+    columns = sheet["columns"]
+    rows = -(-len(pictures) // columns)
+    picture = Image.new("RGB", (width * columns, 56 + height * rows), BACKDROP)
+    draw = ImageDraw.Draw(picture)
+    draw.text((EDGE, 14), sheet["title"], INK, font(19, bold=True))
+    for index, ((caption, _), cell) in enumerate(zip(sheet["cells"], pictures, strict=True)):
+        left, top = width * (index % columns), 56 + height * (index // columns)
+        picture.paste(cell, (left, top), cell)
+        draw.text((left + width / 2, top + height - 16), caption, INK, font(13), anchor="mm")
+    return picture
+
+
 def legend(draw, sheet, size):
     left, right, top = LABELS + 170, size[0] - EDGE - 170, size[1] - 34
     for x in range(left, right):
@@ -74,4 +91,5 @@ def legend(draw, sheet, size):
 
 if __name__ == "__main__":
     description, target = sys.argv[1:]
-    compose(json.loads(Path(description).read_text())).save(target, optimize=True)
+    sheet = json.loads(Path(description).read_text())
+    (grid if "cells" in sheet else compose)(sheet).save(target, optimize=True)

@@ -404,23 +404,7 @@ def test_without_the_library_the_add_on_registers_and_says_what_is_needed():
 sys.modules["ltmd"] = None  # as if no wheel fitted this Python
 load_addon()
 from blender_addon import library, panel
-
-class Layout:
-    '''Takes the calls of a panel's draw() and keeps the words.'''
-    def __init__(self, words):
-        self.words = words
-    def _same(self, *args, **kwargs):
-        return Layout(self.words)
-    row = column = split = box = _same
-    def label(self, text="", icon="NONE"):
-        self.words.append(text)
-    def prop(self, data, name, text=None, **kwargs):
-        self.words.append(text or data.bl_rna.properties[name].name)
-    def prop_search(self, data, name, *args, **kwargs):
-        self.words.append(data.bl_rna.properties[name].name)
-    def operator(self, name, text=None, **kwargs):
-        self.words.append(text or name)
-        return Layout([])
+from layout import Layout
 
 obj = mesh_object("Plane", [(-1, -1, 0), (1, -1, 0), (1, 1, 0)], [(0, 1, 2)])
 words = []

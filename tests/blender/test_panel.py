@@ -1,0 +1,109 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The panel's words follow the material, and what they set is in the nodes."""
+
+import numpy as np
+import pytest
+from blender_process import run
+
+PANEL = """
+from layout import Layout
+from trees import *
+import version_1
+from blender_addon import panel, surface, false_colour
+
+def words():
+    kept = []
+    panel.draw(Layout(kept), bpy.context)
+    return " ".join(kept)
+
+obj = cube()
+material = new_material("M", obj)
+plain = words()
+bpy.ops.ltmd.setup(object_name="Cube")
+glossy = words()
+node = surface.lobe(material)
+settings = material.ltmd
+modes = [settings.mode]
+settings.mode = "REFERENCE"
+modes += [settings.mode, node.inputs["Mode"].default_value]
+
+limits = []
+for rough, exact, stretch, shear, strength, response in ARGUMENTS["lobes"]:
+    for name, v in (("Roughness", rough), ("Roughness Is Alpha", bool(exact)), ("Stretch", stretch),
+                    ("Shear", shear), ("Strength", strength), ("Height Response", response)):
+        node.inputs[name].default_value = v
+    limits.append(surface.roughest(node))
+
+bpy.ops.ltmd.preset(object_name="Cube", preset="GOLD")
+gold = words(), settings.conductor_type
+settings.conductor_type = "COLOUR"
+kind = words(), surface.lobe(material).inputs["Conductor Type"].default_value
+bpy.ops.ltmd.show_tension(object_name="Cube")
+shown = words()
+settings.view = "DIRECTIONS"
+directions = words(), false_colour.views(material)[0].inputs["Mode"].default_value
+
+other = cube("Other")
+version_1.set_up(other, new_material("Old", other))
+bpy.context.view_layer.objects.active = other
+old = words()
+bpy.ops.ltmd.update_nodes()
+report(plain=plain, glossy=glossy, modes=modes, limits=limits, gold=gold, kind=kind, shown=shown,
+       directions=directions, old=old, updated=words())
+"""
+
+LOBES = [
+    # roughness, is it alpha, stretch, shear, strength, height response
+    (0.5, 0, 0, 0, 1, 0),
+    (0.7, 0, 0, 0, 1, 0),
+    (0.5, 1, 0, 0, 1, 0),
+    (0.5, 0, 0.6, 0, 1, 0),
+    (0.5, 0, -0.6, 0.7, 1, 0),
+    (0.5, 0, 0.9, 0, 1, 0),
+    (0.7, 0, 0, 0, 0.5, 1),
+    (0.7, 0, 0, 0, 2, 0),
+    (0.7, 0, 0, 0, 0, 0),
+]
+
+
+def test_the_panel_says_what_is_set():
+    found = run(PANEL, arguments={"lobes": LOBES})
+    assert "Not set up" in found["plain"] and "Show Tension" not in found["plain"]
+    for word in ("Roughness", "Tail", "Lobes", "Mode", "Preset", "ltmd.show_tension"):
+        assert word in found["glossy"], word
+    assert found["modes"] == ["ALL", "REFERENCE", 2]
+    words, kind = found["gold"]
+    assert kind == "MEASURED" and "Extinction" in words and "Edge Tint" not in words
+    words, number = found["kind"]
+    assert number == 0 and "Edge Tint" in words and "Extinction" not in words
+    assert "Red: 2 times the length" in found["shown"] and "Strokes" not in found["shown"]
+    words, number = found["directions"]
+    assert number == 2 and "Strokes lie along" in words
+    assert "ltmd.update_nodes" in found["old"] and "older version" in found["old"]
+    assert "ltmd.update_nodes" not in found["updated"]
+
+
+def test_where_the_roughness_of_cycles_ends():
+    limits = run(PANEL, arguments={"lobes": LOBES})["limits"]
+    for (rough, exact, stretch, shear, strength, response), said in zip(LOBES, limits, strict=True):
+        sx = 1 + stretch if stretch < 0 else 1 / (1 - stretch)
+        m0 = np.array([[1, shear], [0, 1]]) @ np.diag([sx, 1 / sx])
+        alpha = rough if exact else rough**2
+
+        def widest(q, alpha=alpha, m0=m0, strength=strength, response=response):
+            # The squeeze lies along the direction in which the material is widest already.
+            u, s, _ = np.linalg.svd(m0)
+            t = u @ np.diag([1, q**strength]) @ u.T
+            heights = np.linalg.det(t) ** -response
+            return alpha * heights / np.linalg.svd(t @ m0, compute_uv=False)[1]
+
+        if widest(1) >= 1:
+            assert "Already at rest" in said
+        elif widest(1 / 3) <= 1:
+            assert said is None, (rough, strength, said)
+        else:
+            low, high = 1 / 3, 1
+            while high - low > 1e-6:
+                middle = (low + high) / 2
+                low, high = (middle, high) if widest(middle) > 1 else (low, middle)
+            assert int(said.split("%")[0].split()[-1]) == pytest.approx(100 * low, abs=0.51)
