@@ -6,6 +6,7 @@ import textwrap
 import bpy
 
 from . import false_colour, library, setup, source, surface, versions
+from .properties import SOURCES
 from .writable import REFUSAL, is_writable
 
 
@@ -30,7 +31,8 @@ def state(obj):
         return "Live: the deformation is measured while rendering"
     if kind == "TEXTURE":
         return "Texture: the deformation is read from the baked images"
-    return "Measured at every frame by a modifier, smooth, the same throughout a motion blur"
+    name = "Attribute" if kind == "ATTRIBUTE" else "Tensor"
+    return f"{name}: a modifier measures every frame; smooth, the same throughout a motion blur"
 
 
 def draw(layout, context):
@@ -61,10 +63,10 @@ def draw(layout, context):
 
     row = layout.row(align=True)
     row.operator("ltmd.setup", text="Set Up LTMD").object_name = ""
-    if obj.ltmd.source not in ("NONE", "LIVE"):
-        row.operator("ltmd.setup", text="Measure Live").source = "LIVE"
     if obj.ltmd.source != "NONE":
         row.operator("ltmd.remove", text="Remove").object_name = ""
+        name = next(item[1] for item in SOURCES if item[0] == obj.ltmd.source)
+        layout.operator_menu_enum("ltmd.setup", "source", text=f"Source: {name}")
 
     draw_older(layout, context)
     material = shown_material(obj)

@@ -104,8 +104,8 @@ def environment():
         (
             (0.0, (0.03, 0.029, 0.028)),
             (0.46, (0.08, 0.078, 0.076)),
-            (0.52, (0.24, 0.245, 0.25)),
-            (1.0, (0.52, 0.55, 0.59)),
+            (0.52, (0.25, 0.24, 0.235)),
+            (1.0, (0.58, 0.56, 0.55)),
         ),
         strict=True,
     ):
@@ -122,7 +122,7 @@ def main():
         SIZE,
         view=(0, -9, 2.2),
         target=(0.03, 0, 0.02),
-        height=2.3,
+        height=2.4,
         lights=(
             ((-4.5, -3.5, 3.5), 210, (0.9, 5)),
             ((4.8, -2.2, 2.0), 110, (0.5, 5)),
@@ -132,7 +132,7 @@ def main():
     environment()
     plain = gallery.paint("Material", (0.03, 0.22, 0.2), 0.36)
     objects = []
-    for name, x in (("Rest", -0.68), ("Wrung", 0.5)):
+    for name, x in (("Rest", -0.76), ("Wrung", 0.52)):
         obj, rest = rod(name, (x, 0, 0))
         obj.data.materials.append(plain)
         obj.rotation_euler = (0, math.radians(4 if x < 0 else -5), 0)
