@@ -111,10 +111,14 @@ def draw_material(layout, context, material):
     body = layout.column()
     body.enabled = is_writable(material)
     if "Conductor Type" in node.inputs:
-        body.prop(settings, "conductor_type")
-        by_colour = settings.conductor_type == "COLOUR"
-        names = ("Base Color", "Edge Tint") if by_colour else ("IOR", "Extinction")
-        sliders(body.column(align=True), node, names)
+        body.prop(settings, "metal")
+        if settings.metal == "COLOUR":
+            sliders(body.column(align=True), node, ("Base Color", "Edge Tint"))
+        else:
+            header, values = body.panel("LTMD_metal", default_closed=True)
+            header.label(text="Measured Values")
+            if values:
+                sliders(values.column(align=True), node, ("IOR", "Extinction"))
     elif "Coat Tint" in node.inputs:
         sliders(body.column(align=True), node, ("Coat Tint", "IOR"))
     column = body.column(align=True)

@@ -4,7 +4,7 @@
 import bpy
 from bpy.props import BoolProperty, EnumProperty, IntProperty, PointerProperty, StringProperty
 
-from . import false_colour, surface
+from . import false_colour, presets, surface
 from .writable import is_writable
 
 OVERRIDABLE = {"LIBRARY_OVERRIDABLE"}
@@ -32,9 +32,13 @@ PASS_ITEMS = (
 )
 
 
-CONDUCTOR_TYPES = (
-    ("COLOUR", "Colour", "The metal's colour straight on and near the outline", 0),
-    ("MEASURED", "Measured", "Index of refraction and extinction, as metals are measured", 1),
+METALS = (
+    ("COLOUR", "By Colour", "Chosen by its colour straight on and near the outline", 0),
+    ("VALUES", "By Values", "Index of refraction and extinction, as metals are measured", 1),
+    *(
+        (key, preset.label, "Measured index of refraction and extinction", number)
+        for number, (key, preset) in enumerate(presets.METAL.items(), 2)
+    ),
 )
 
 MODES = (
@@ -77,6 +81,33 @@ def _of_lobe(name):
 
 def _of_views(material):
     return [view.inputs["Mode"] for view in false_colour.views(material)]
+
+
+def _present_metal(self):
+    node = surface.lobe(self.id_data)
+    if node is None or "Conductor Type" not in node.inputs:
+        return 0
+    if node.inputs["Conductor Type"].default_value == 0:
+        return 0
+    for number, preset in enumerate(presets.METAL.values(), 2):
+        pairs = [(node.inputs[name], preset.sockets[name]) for name in ("IOR", "Extinction")]
+        if all(
+            abs(found - wanted) < 1e-5
+            for socket, values in pairs
+            for found, wanted in zip(socket.default_value, values, strict=True)
+        ):
+            return number
+    return 1
+
+
+def _choose_metal(self, number):
+    node = surface.lobe(self.id_data)
+    if node is None or "Conductor Type" not in node.inputs or not is_writable(self.id_data):
+        return
+    key = METALS[number][0]
+    values = presets.METAL[key].sockets if number > 1 else {"Conductor Type": number}
+    for name, value in values.items():
+        node.inputs[name].default_value = value
 
 
 def _is_mesh(_self, obj):
@@ -195,8 +226,13 @@ class LtmdMaterialSettings(bpy.types.PropertyGroup):
         options={"HIDDEN"},
     )
     # Not stored: words for numbers in the node tree.
-    conductor_type: _numbered(
-        "Metal", "What gives the metal's colour", CONDUCTOR_TYPES, _of_lobe("Conductor Type")
+    metal: EnumProperty(
+        name="Metal",
+        description="Which metal an LTMD Conductor is",
+        items=METALS,
+        get=_present_metal,
+        set=_choose_metal,
+        options=set(),
     )
     mode: _numbered(
         "Mode", "How the highlights that shape the tail are rendered", MODES, _of_lobe("Mode")

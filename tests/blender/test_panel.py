@@ -35,9 +35,13 @@ for rough, exact, stretch, shear, strength, response in ARGUMENTS["lobes"]:
     limits.append(surface.roughest(node))
 
 bpy.ops.ltmd.preset(object_name="Cube", preset="GOLD")
-gold = words(), settings.conductor_type
-settings.conductor_type = "COLOUR"
-kind = words(), surface.lobe(material).inputs["Conductor Type"].default_value
+gold = words(), settings.metal
+kinds = []
+for metal in ("VALUES", "SILVER", "COLOUR"):
+    settings.metal = metal
+    node = surface.lobe(material)
+    kinds.append([words(), settings.metal, node.inputs["Conductor Type"].default_value,
+                  value(node.inputs["IOR"])])
 bpy.ops.ltmd.show_tension(object_name="Cube")
 shown = words()
 settings.view = "DIRECTIONS"
@@ -48,7 +52,7 @@ version_1.set_up(other, new_material("Old", other))
 bpy.context.view_layer.objects.active = other
 old = words()
 bpy.ops.ltmd.update_nodes()
-report(plain=plain, glossy=glossy, modes=modes, limits=limits, gold=gold, kind=kind, shown=shown,
+report(plain=plain, glossy=glossy, modes=modes, limits=limits, gold=gold, kinds=kinds, shown=shown,
        directions=directions, old=old, updated=words())
 """
 
@@ -73,9 +77,13 @@ def test_the_panel_says_what_is_set():
         assert word in found["glossy"], word
     assert found["modes"] == ["ALL", "REFERENCE", 2]
     words, kind = found["gold"]
-    assert kind == "MEASURED" and "Extinction" in words and "Edge Tint" not in words
-    words, number = found["kind"]
-    assert number == 0 and "Edge Tint" in words and "Extinction" not in words
+    assert kind == "GOLD" and "Extinction" in words and "Edge Tint" not in words
+    # Gold's own values are still gold.
+    (words, kind, number, gold), (_, silver, _, ior), (colours, last, zero, _) = found["kinds"]
+    assert (kind, number) == ("GOLD", 1) and gold == pytest.approx([0.222, 0.428, 1.334], rel=1e-5)
+    assert silver == "SILVER" and ior == pytest.approx([0.058, 0.060, 0.047], rel=1e-5)
+    assert last == "COLOUR" and zero == 0
+    assert "Edge Tint" in colours and "Extinction" not in colours
     assert "Red: 2 times the length" in found["shown"] and "Strokes" not in found["shown"]
     words, number = found["directions"]
     assert number == 2 and "Strokes lie along" in words
