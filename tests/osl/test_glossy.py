@@ -100,6 +100,26 @@ report(cases=cases)
     )
 
 
+def test_lobes_and_exact_alpha_equal_stock_glossy():
+    """Tail 2 is one lobe whatever Lobes is, and Roughness can be alpha itself."""
+    check(
+        run(
+            PRELUDE
+            + """
+m = material_matrix(.3, .6, 0)
+for lobes in (1, 3, 6):
+    compare(f"lobes {lobes}", Roughness=0.45, Stretch=.3, Rotation=.6, Lobes=lobes, matrix=m)
+reflection.inputs["Roughness Is Alpha"].default_value = True
+reflection.inputs["Roughness"].default_value = 0.45**2
+view(1)
+cases.append(dict(name="alpha", error=np.abs(picture(reflection) - expected(0.45, m)).max(),
+                  brightest=1))
+report(cases=cases)
+"""
+        )
+    )
+
+
 def test_guards():
     """No tangent, a meaningless tension or a zero roughness never gives a black or broken pixel."""
     result = run(
