@@ -107,6 +107,26 @@ def limits(obj):
     return None
 
 
+def replace_group(modifier, module):
+    """Show another group in a Geometry Nodes modifier; inputs of the same names keep their values.
+
+    Raises RuntimeError if the group cannot be made.
+    """
+
+    def names():
+        items = modifier.node_group.interface.items_tree
+        return [
+            i.name for i in items if i.in_out == "INPUT" and i.socket_type != "NodeSocketGeometry"
+        ]
+
+    group = nodes.ensure(module)
+    values = {name: _input(modifier, name).get() for name in names()}
+    modifier.node_group = group
+    for name in names():
+        if name in values:
+            _input(modifier, name).set(values[name])
+
+
 class _input:
     """An input of a Geometry Nodes modifier by its name."""
 

@@ -5,17 +5,19 @@ Opening a file changes nothing: a group stays as the add-on that made it built i
 asks for the present one.
 """
 
+import functools
 import importlib
 import pkgutil
 
 import bpy
 
-from . import nodes
+from . import modifier, nodes
 from .nodes import GROUP_KEY, VERSION_KEY
 from .nodes.replace import replace
 from .writable import is_local, is_writable
 
 
+@functools.cache
 def modules():
     """{name of the group: its module} of all groups the add-on makes."""
     found = {}
@@ -37,9 +39,9 @@ def older_groups():
 
 
 def update():
-    """Give every node of this file that shows an older group the present one.
+    """Give every node and modifier of this file that shows an older group the present one.
 
-    Returns (nodes changed, names of the libraries whose groups stay as they are). Raises
+    Returns (how many changed, names of the libraries whose groups stay as they are). Raises
     RuntimeError if a group cannot be made here; then nothing is changed.
     """
     known = modules()
@@ -49,17 +51,27 @@ def update():
             nodes.ensure(known[name])
         owners = [(material, material.node_tree) for material in bpy.data.materials]
         owners += [(t, t) for t in bpy.data.node_groups if t.type == "SHADER" and t not in old]
+        shown = [
+            (owner, node, node.node_tree, replace)
+            for owner, tree in owners
+            if tree
+            for node in tree.nodes
+            if node.type == "GROUP" and node.node_tree in old
+        ]
+        shown += [
+            (obj, m, m.node_group, modifier.replace_group)
+            for obj in bpy.data.objects
+            for m in obj.modifiers
+            if m.type == "NODES" and m.node_group in old
+        ]
         changed, left = 0, set()
-        for owner, tree in owners:
-            for node in list(tree.nodes) if tree else ():
-                if node.type != "GROUP" or node.node_tree not in old:
-                    continue
-                foreign = next((d for d in (owner, node.node_tree) if not is_local(d)), None)
-                if foreign is None:
-                    replace(node, known[node.node_tree[GROUP_KEY]])
-                    changed += 1
-                else:
-                    left.add(foreign.library.filepath if foreign.library else foreign.name)
+        for owner, user, group, replace_in in shown:
+            foreign = next((data for data in (owner, group) if not is_local(data)), None)
+            if foreign is None:
+                replace_in(user, known[group[GROUP_KEY]])
+                changed += 1
+            else:
+                left.add(foreign.library.filepath if foreign.library else foreign.name)
     finally:
         nodes.remove_unused()
     return changed, sorted(left)

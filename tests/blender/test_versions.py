@@ -136,6 +136,44 @@ def test_an_old_file_opens_and_is_updated_on_request(tmp_path):
     assert sorted(found["nodes_left"]) == ["Chosen", "Material Output", "Principled BSDF"]
 
 
+MODIFIER = (
+    SCENE
+    + """
+from blender_addon import modifier
+obj = deformed_cube()
+new_material("M", obj)
+bpy.ops.ltmd.setup(object_name="Cube", source="ATTRIBUTE")
+
+def measured():
+    evaluated = obj.evaluated_get(bpy.context.evaluated_depsgraph_get()).data
+    out = np.empty(3 * len(evaluated.loops), np.float32)
+    evaluated.attributes["ltmd_tension"].data.foreach_get("vector", out)
+    return out
+
+before = measured()
+hidden = modifier.rest_object(obj)
+old = [modifier.find(obj).node_group, hidden.modifiers[-1].node_group]
+for group in old:
+    group["ltmd_version"] = 0
+older = len(versions.older_groups())
+bpy.ops.ltmd.update_nodes()
+bpy.context.view_layer.update()
+new = [modifier.find(obj).node_group, hidden.modifiers[-1].node_group]
+report(before=before, after=measured(), older=older, kept=modifier.rest_object(obj) == hidden,
+       versions=[g["ltmd_version"] for g in new], left=len(versions.older_groups()))
+"""
+)
+
+
+def test_modifiers_are_updated_with_their_rest_state():
+    found = run(MODIFIER)
+    assert found["older"] == 2 and found["left"] == 0 and found["kept"]
+    assert min(found["versions"]) >= 1
+    before = np.array(found["before"])
+    assert np.abs(before.reshape(-1, 3) - (1, 0, 1)).max() > 0.1
+    assert np.array_equal(before, found["after"])
+
+
 LIBRARY = (
     SCENE
     + """
