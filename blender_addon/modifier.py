@@ -10,13 +10,25 @@ import bpy
 import numpy as np
 
 from . import nodes, rest_state
-from .nodes import rest_modifier, rest_position_modifier, tension_modifier, tensor_modifier
+from .nodes import (
+    attribute_tension,
+    rest_modifier,
+    rest_position_modifier,
+    tension_modifier,
+    tensor_modifier,
+    tensor_tension,
+)
 
 GROUPS = {
     "LIVE": rest_position_modifier,
     "ATTRIBUTE": tension_modifier,
     "TENSOR": tensor_modifier,
 }
+STORED = {
+    "ATTRIBUTE": (attribute_tension.ATTRIBUTE,),
+    "TENSOR": (tensor_tension.DIAGONAL, tensor_tension.OFF_DIAGONAL),
+}
+STORED_KEY = "ltmd_stored_frame"  # custom property of a mesh that has the values of one frame
 REST_KEY = "ltmd_rest_of"  # custom property of a hidden object: the name of the measured one
 
 
@@ -90,9 +102,44 @@ def alike(obj):
     return (len(mesh.vertices), len(mesh.loops)) == (len(rest.vertices), len(rest.loops))
 
 
+def store(obj, kind):
+    """Keep this frame's values as attributes of the mesh and take the modifier away.
+
+    kind: "ATTRIBUTE" or "TENSOR". Returns False, and changes nothing, if the evaluated mesh is not
+    the object's own: then there is no element to keep a value in.
+    """
+    mesh = obj.data
+    evaluated = obj.evaluated_get(bpy.context.evaluated_depsgraph_get()).data
+    if (len(mesh.vertices), len(mesh.loops)) != (len(evaluated.vertices), len(evaluated.loops)):
+        return False
+    for name in STORED[kind]:
+        measured = evaluated.attributes[name]
+        values = np.empty(len(measured.data) * 3, np.float32)
+        measured.data.foreach_get("vector", values)
+        kept = mesh.attributes.get(name)
+        if kept is not None:
+            mesh.attributes.remove(kept)
+        kept = mesh.attributes.new(name, "FLOAT_VECTOR", measured.domain)
+        kept.data.foreach_set("vector", values)
+    mesh[STORED_KEY] = bpy.context.scene.frame_current
+    remove(obj)
+    return True
+
+
+def clear_stored(mesh):
+    """Remove what store() kept in the mesh."""
+    if STORED_KEY in mesh:
+        for name in sum(STORED.values(), ()):
+            if name in mesh.attributes:
+                mesh.attributes.remove(mesh.attributes[name])
+        del mesh[STORED_KEY]
+
+
 def limits(obj):
     """What the modifier cannot show on this object, as a sentence, or None."""
     ours = find(obj)
+    if ours is None and STORED_KEY in obj.data:
+        return f"The tension of frame {obj.data[STORED_KEY]} is stored and shown at every frame"
     if ours is None:
         return "The modifier that measures is gone: press Set Up LTMD again"
     hidden = rest_object(obj)

@@ -114,6 +114,8 @@ def _forget(obj):
     obj.ltmd.source = "NONE"
     modifier.remove(obj)
     mesh = obj.data
+    if is_writable(mesh):
+        modifier.clear_stored(mesh)
     shared = any(o.data == mesh and o.ltmd.source == "LIVE" for o in bpy.data.objects)
     if is_writable(mesh) and not shared:
         source.clear_rest(mesh)
@@ -222,6 +224,18 @@ class LTMD_OT_setup(OnObjects, bpy.types.Operator):
         self.report({"INFO"} if good else {"WARNING"}, sentence)
 
 
+class LTMD_OT_store_tension(OnObjects, bpy.types.Operator):
+    """Keep the tension of this frame in the mesh, for export or a still; it is shown at every frame
+    until Set Up LTMD is pressed again"""
+
+    bl_idname = "ltmd.store_tension"
+    bl_label = "Store Tension of This Frame"
+    bl_options = {"REGISTER", "UNDO"}
+
+    def work(self, obj):
+        return source.store_frame(obj)
+
+
 class LTMD_OT_remove(OnObjects, bpy.types.Operator):
     """Take LTMD off the selected objects and restore their materials"""
 
@@ -235,7 +249,7 @@ class LTMD_OT_remove(OnObjects, bpy.types.Operator):
         return remove(obj)
 
 
-CLASSES = (LTMD_OT_setup, LTMD_OT_remove)
+CLASSES = (LTMD_OT_setup, LTMD_OT_store_tension, LTMD_OT_remove)
 
 
 def register():

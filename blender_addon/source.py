@@ -7,7 +7,7 @@ import numpy as np
 from . import modifier, nodes, rest_state, surface
 from .nodes import attribute_tension, live_tension, tensor_tension, texture_tension
 from .nodes.rest_positions import REST_ATTRIBUTE
-from .writable import is_writable
+from .writable import is_local, is_writable
 
 # Modifiers that only move vertices, or copy triangles unchanged: a point attribute of the rest
 # positions stays right behind them. Anything else makes new shapes, where only the Generated
@@ -145,6 +145,8 @@ def measure(obj, kind):
 
     kind: one of GROUPS. Raises SourceError.
     """
+    if is_writable(obj.data):
+        modifier.clear_stored(obj.data)
     if kind == "LIVE":
         return _store_rest(obj)
     uv_map = obj.ltmd.uv_map or rest_state.default_uv_map(obj.data)
@@ -157,6 +159,28 @@ def measure(obj, kind):
         clear_rest(obj.data)
     limit = modifier.limits(obj)
     return [f"{obj.name}: {limit}"] if limit else []
+
+
+def store_frame(obj):
+    """Keep this frame's tension in the mesh, not measuring any more. Raises SourceError."""
+    if obj.ltmd.source not in modifier.STORED:
+        raise SourceError(
+            f"{obj.name}: choose the source Attribute or Tensor first, which can be stored"
+        )
+    if not is_local(obj.data):
+        raise SourceError(f"{obj.name}: linked mesh data cannot store a tension; bake instead")
+    if obj.data.users > 1:
+        raise SourceError(
+            f"{obj.name} shares its mesh with another object: make it single-user, as each would "
+            "show the tension of this one"
+        )
+    measure(obj, obj.ltmd.source)
+    if not modifier.alike(obj) or not modifier.store(obj, obj.ltmd.source):
+        raise SourceError(
+            f"{obj.name}: modifiers change the mesh, so it has no place for each value; apply the "
+            "ones that make geometry, or keep measuring every frame"
+        )
+    return [f"{obj.name}: {modifier.limits(obj)}"]
 
 
 def _store_rest(obj):

@@ -225,6 +225,12 @@ for value in (0, 1):
     values.append(read(mesh, "ltmd_tension", len(mesh.loops)))
 out["rest"] = np.abs(values[0] - (1, 0, 1)).max()
 out["moved"] = np.abs(values[1] - (1, 0, 1)).max()
+# One frame kept in the mesh: the same values, at every frame, until it is set up again.
+bpy.ops.ltmd.store_tension(object_name="Ball")
+kept = read(obj.data, "ltmd_tension", len(obj.data.loops))
+out["stored"] = [np.abs(kept - values[1]).max(), len(obj.modifiers), source.modifier_limits(obj)]
+bpy.ops.ltmd.setup(object_name="Ball")
+out["measured again"] = ["ltmd_tension" in obj.data.attributes, len(obj.modifiers)]
 # Another topology: shown at rest, and said.
 obj.modifiers.new("Cut", "TRIANGULATE")
 obj.modifiers.new("More", "SUBSURF").levels = 1
@@ -254,5 +260,7 @@ report(before=before, after=after, **out)
         assert not [a for a in attributes if a.startswith("ltmd")]
     assert result["shared"] == [False, "ATTRIBUTE", "TENSOR"]
     assert result["rest"] < 1e-6 and result["moved"] > 0.2
+    assert result["stored"][:2] == [0, 0] and "frame 1" in result["stored"][2]
+    assert result["measured again"] == [False, 1]
     assert result["changed"][0] is False and "Set Up LTMD again" in result["changed"][1]
     assert "to the end" in result["not last"]
