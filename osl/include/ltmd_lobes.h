@@ -8,6 +8,7 @@
 // returns: so the renderer folds the fit into constants wherever Roughness and Tail are not
 // textured, and drops unused lobes.
 
+#include "ltmd_energy.h"
 #include "ltmd_lobe_table.h"
 #include "ltmd_surface.h"
 
@@ -32,6 +33,7 @@ struct LtmdLobes {
     int ggx;
     float alpha0, alpha1, alpha2, alpha3, alpha4, alpha5;
     float weight0, weight1, weight2, weight3, weight4, weight5;
+    float gain;  // 1 / albedo of all closures together, if it is wanted
 };
 
 // Calls STEP(number) for each lobe.
@@ -153,11 +155,48 @@ void ltmd_visible_weights(LtmdSurface surface, output LtmdLobes lobes)
     LTMD_EACH_LOBE(LTMD_NORMALISE_LOBE)
 }
 
-// One of the lobes, with its weight as probability, in the place of all.
+// Scales the weights of lobes rougher than closures can be to the energy of those lobes; with all
+// energy preserved they stay, as their closures may be as bright as they are. Sets the gain.
+void ltmd_lobe_energy(LtmdSurface surface, float preserve_energy, output LtmdLobes lobes)
+{
+    lobes.gain = 1;
+    float roughest = max(max(max(lobes.alpha0, lobes.alpha1), max(lobes.alpha2, lobes.alpha3)),
+                         max(lobes.alpha4, lobes.alpha5));
+    if (preserve_energy > 0 || roughest * surface.scale_y > 1) {
+        // A loop, as functions are copied to where they are called.
+        float alphas[6] = { lobes.alpha0, lobes.alpha1, lobes.alpha2,
+                            lobes.alpha3, lobes.alpha4, lobes.alpha5 };
+        float weights[6] = { lobes.weight0, lobes.weight1, lobes.weight2,
+                             lobes.weight3, lobes.weight4, lobes.weight5 };
+        float albedo = 0;
+        for (int i = 0; i < 6; i += 1) {
+            int rough = alphas[i] * surface.scale_y > 1;
+            if (weights[i] > 0 && (rough || preserve_energy > 0)) {
+                float gain = ltmd_closure_gain(i < lobes.ggx, surface, alphas[i]);
+                albedo += weights[i] / gain;
+                if (rough && preserve_energy < 1)
+                    weights[i] *= mix(ltmd_random_albedo(i < lobes.ggx, surface, alphas[i]) * gain,
+                                      1.0, max(preserve_energy, 0.0));
+            }
+        }
+        if (preserve_energy > 0)
+            lobes.gain = 1 / albedo;
+        lobes.weight0 = weights[0];
+        lobes.weight1 = weights[1];
+        lobes.weight2 = weights[2];
+        lobes.weight3 = weights[3];
+        lobes.weight4 = weights[4];
+        lobes.weight5 = weights[5];
+    }
+}
+
+// One of the lobes, with its share of the weights as probability, in the place of all.
 void ltmd_pick_lobe(output LtmdLobes lobes)
 {
     // P is another for each camera sample and each bounce.
-    float u = hashnoise(P, time);
+    float sum = lobes.weight0 + lobes.weight1 + lobes.weight2 + lobes.weight3 + lobes.weight4 +
+                lobes.weight5;
+    float u = sum * hashnoise(P, time);
     int picked = 0;
     float edge = lobes.weight0;
     float alpha = lobes.alpha0;
@@ -170,7 +209,7 @@ void ltmd_pick_lobe(output LtmdLobes lobes)
     LTMD_PICK_LOBE(1) LTMD_PICK_LOBE(2) LTMD_PICK_LOBE(3) LTMD_PICK_LOBE(4) LTMD_PICK_LOBE(5)
     lobes.ggx = picked < lobes.ggx;
     lobes.alpha0 = alpha;
-    lobes.weight0 = 1;
+    lobes.weight0 = sum;
     lobes.weight1 = 0;
     lobes.weight2 = 0;
     lobes.weight3 = 0;
@@ -181,14 +220,16 @@ void ltmd_pick_lobe(output LtmdLobes lobes)
 // The lobes of a material, with their closures' weights; mode 1 leaves one of them. `most`: how many
 // closures of its kind fit into the GPU's closure stack beside the rest of a material.
 void ltmd_material_lobes(LtmdSurface surface, float table[], float alpha, float gamma,
-                         int lobes_wanted, int mode, int most, output LtmdLobes lobes)
+                         int lobes_wanted, int mode, float preserve_energy, int most,
+                         output LtmdLobes lobes)
 {
     ltmd_fit_lobes(table, alpha, gamma, ltmd_lobe_count(lobes_wanted, alpha, gamma, most), lobes);
-    if (lobes.weight0 < 1) {
+    int several = lobes.weight0 < 1;
+    if (several)
         ltmd_visible_weights(surface, lobes);
-        if (mode == 1)
-            ltmd_pick_lobe(lobes);
-    }
+    ltmd_lobe_energy(surface, preserve_energy, lobes);
+    if (several && mode == 1)
+        ltmd_pick_lobe(lobes);
 }
 
 // Arguments of a lobe's closure.

@@ -259,32 +259,40 @@ vector ltmd_facing_normal(LtmdDistribution d, int masking, vector v, float key, 
             if (ltmd_random(key + 2) * 2 * facing > 1 + shown)
                 azimuth += M_PI;
         } else {
-            // The slope's density is p (1 + hidden), drawn from p and from the steps of Lambda.
+            // The slope's density is p (1 + hidden), drawn from p, from the steps of Lambda and
+            // from the power beyond them.
             int step = 0;
-            float term = 0, lambda = 0, w = 0;
-            if (tangent > 1e-4)
-                lambda = ltmd_lambda_sum(d, tangent, 1e30, step, term);
-            int steps = step;
-            u *= 1 + lambda;
-            term = 0;
-            if (u < 1) {
-                r = ltmd_slope(d, u);
-                float x = r * tangent;
-                if (x > 1) {
-                    w = log(x + sqrt((x - 1) * (x + 1)));
-                    step = (int)(w / LTMD_LAMBDA_STEP + 0.5);
-                    if (step > 0 && step <= steps)
-                        term = ltmd_lambda_term(d, tangent, step * LTMD_LAMBDA_STEP);
-                }
-            } else {
-                ltmd_lambda_sum(d, tangent, u - 1, step, term);
-                w = (step - 0.5 + ltmd_random(key + 1)) * LTMD_LAMBDA_STEP;
-                r = cosh(w) / tangent;
+            float term, steps_sum = 0, tail = 0, edge = 1;
+            if (tangent > 1e-4) {
+                steps_sum = ltmd_lambda_sum(d, tangent, 1e30, step, term);
+                edge = cosh((step + 0.5) * LTMD_LAMBDA_STEP);
+                if (d.decay > 0)
+                    tail = ltmd_density(d, edge * edge / (tangent * tangent)) * edge /
+                           (M_PI * d.decay);
             }
-            float p = ltmd_density(d, r * r);
-            facing = 1 + lambda;
-            if (p > 0)
-                facing *= p * (1 + ltmd_hidden(r * tangent)) / (p + (term > 0 ? term / tanh(w) : 0));
+            float part = (1 + steps_sum + tail) * ltmd_random(key + 1);
+            float x;
+            if (part < 1) {
+                x = ltmd_slope(d, u) * tangent;
+            } else if (part < 1 + steps_sum) {
+                ltmd_lambda_sum(d, tangent, part - 1, step, term);
+                x = cosh((step - 0.5 + u) * LTMD_LAMBDA_STEP);
+            } else {
+                x = edge * min(pow(1 - u, -1 / d.decay), 1e12);
+            }
+            r = tangent > 1e-4 ? x / tangent : ltmd_slope(d, u);
+            float p = ltmd_density(d, r * r), drawn = p;
+            if (x > edge) {
+                drawn += tail * d.decay * pow(x / edge, -d.decay);
+            } else if (x > 1) {
+                float w = log(x + sqrt((x - 1) * (x + 1)));
+                step = (int)(w / LTMD_LAMBDA_STEP + 0.5);
+                if (step > 0)
+                    drawn += ltmd_lambda_term(d, tangent, step * LTMD_LAMBDA_STEP) / tanh(w);
+            }
+            facing = 1 + steps_sum + tail;
+            if (drawn > 0)
+                facing *= p * (1 + ltmd_hidden(x)) / drawn;
             azimuth = ltmd_visible_azimuth(r * tangent, key + 2);
         }
         float c = across > 0 ? v[0] / across : 1, s = across > 0 ? v[1] / across : 0;

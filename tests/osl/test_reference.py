@@ -6,30 +6,8 @@ import ltmd
 import numpy as np
 from blender_process import ROOT, run
 from directional_light import polar, seen
+from tile_picture import WHITE, check, tile_means
 
-TILES = (
-    f"""
-sys.path.insert(0, {str(ROOT / "tests" / "osl")!r})
-from shading import *
-import tiles
-"""
-    + """
-from blender_addon.nodes import reference
-def rendered(views, samples, attributes, constants, module=reference):
-    tree, output = tiles.scene(views, samples, attributes)
-    node = group(tree, module)
-    node.inputs["Color"].default_value = (1, 1, 1, 1)
-    for name, value in constants.items():
-        node.inputs[name].default_value = value
-    for name in attributes:
-        tiles.link_attribute(tree, name, node.inputs[name])
-    tiles.link_attribute(tree, "x_axis", node.inputs["Tangent"])
-    tree.links.new(node.outputs[0], output.inputs["Surface"])
-    return tiles.measure(len(views))
-mean, error = rendered(**ARGUMENTS)
-report(mean=mean, error=error)
-"""
-)
 ANGLES = (1, 25, 50, 70, 80, 85)
 MAPS = ((0, 0, 0, (1, 0, 1)), (0.3, 0.7, 0.4, (1, 0, 1)), (-0.2, 0.3, 0, (1.3, 0.4, 0.8)))
 MODELS = ("height_correlated", "separable", "v_cavity")
@@ -39,28 +17,30 @@ def matrix(stretch, rotation, shear, t):
     return np.array([[t[0], t[1]], [0, t[2]]]) @ ltmd.material_matrix(stretch, rotation, shear)
 
 
-def render(views, samples, attributes, **constants):
-    views = np.asarray(views)
-    result = run(
-        TILES,
-        arguments={
-            "views": views.tolist(),
-            "samples": samples,
-            "attributes": {k: np.asarray(v).tolist() for k, v in attributes.items()},
-            "constants": {"Roughness Is Alpha": True, **constants},
-        },
-    )
-    return np.array(result["mean"]), np.array(result["error"])
+# Facets towards a view of the angle and case that the place tells.
+PROBE = """
+#include "stdcycles.h"
+#include "ltmd_reference.h"
 
-
-def check(mean, error, expected, names):
-    """As many deviations as chance has: each below 4.5 sigma and their mean square near 1."""
-    # Lambda's quadrature in the shader is good to 4e-4.
-    z = (mean - expected) / np.hypot(error, 5e-4 * np.maximum(1, expected))
-    worst = np.unravel_index(np.argmax(np.abs(z)), z.shape)
-    where = (names[worst[0]], mean[worst], expected[worst], error[worst])
-    assert np.abs(z).max() < 4.5, where
-    assert np.mean(z**2) < 1.5
+shader probe(
+    float Angles[{angle_count}] = {{ {angles} }},
+    float Cases[{case_count}] = {{ {cases} }},
+    output color Value = 0)
+{{
+    float theta = radians(Angles[(int)floor(P[0])]);
+    // At rest, of a map that stretches the slopes along V.
+    vector view = vector(0.6 * sin(theta), 1.7 * 0.8 * sin(theta), cos(theta));
+    int at = 4 * (int)floor(P[1]);
+    int masking = (int)Cases[at + 1];
+    LtmdDistribution d = ltmd_distribution((int)Cases[at], Cases[at + 2], Cases[at + 3]);
+    float facing;
+    vector q = ltmd_facing_normal(d, masking, view, 7, facing);
+    Value = facing * (masking == LTMD_V_CAVITY ? min(1.0, 2 * view[2] / dot(q, view))
+                                               : 1 / (1 + ltmd_lambda(d, view)));
+}}
+"""
+# Lambda's quadrature in the shader is good to 4e-4.
+TOLERANCE = 5e-4
 
 
 def test_reflection_equals_the_library():
@@ -85,7 +65,8 @@ def test_reflection_equals_the_library():
             seen(view, lambda o, d=d, k=masking, v=view: ltmd.brdf(d, v, o, model=MODELS[k]))
         )
     columns = np.array([case for case, _ in rows])
-    mean, error = render(
+    mean, error = tile_means(
+        "reference",
         views,
         256,
         {
@@ -98,8 +79,9 @@ def test_reflection_equals_the_library():
             "Shear": [m[2] for m in maps],
             "Tension": [m[3] for m in maps],
         },
+        Color=WHITE,
     )
-    check(mean, error, np.array(expected), rows)
+    check(mean, error, np.array(expected), rows, TOLERANCE)
 
 
 def test_tilted_ellipsoids_from_both_sides():
@@ -121,7 +103,8 @@ def test_tilted_ellipsoids_from_both_sides():
             return ltmd.brdf(d, s * v, s * o, model=MODELS[k])
 
         expected.append(seen(view, scattered))
-    mean, error = render(
+    mean, error = tile_means(
+        "reference",
         views,
         256,
         {
@@ -135,8 +118,9 @@ def test_tilted_ellipsoids_from_both_sides():
             "Tension": [m[3] for m in maps],
         },
         Distribution=4,
+        Color=WHITE,
     )
-    check(mean, error, np.array(expected), rows)
+    check(mean, error, np.array(expected), rows, TOLERANCE)
 
 
 def test_glass_under_a_map_equals_the_library():
@@ -168,7 +152,8 @@ def test_glass_under_a_map_equals_the_library():
         assert light[0] <= 1 + 1e-3
         expected.append(light)
     columns = np.array([case for case, _ in rows])
-    mean, error = render(
+    mean, error = tile_means(
+        "reference",
         views,
         256,
         {
@@ -182,6 +167,53 @@ def test_glass_under_a_map_equals_the_library():
             "Tension": [m[3] for m in maps],
         },
         Refraction=True,
+        Color=WHITE,
         IOR=ior,
     )
-    check(mean, error, np.array(expected), rows)
+    check(mean, error, np.array(expected), rows, TOLERANCE)
+
+
+def test_weak_white_furnace(tmp_path):
+    """Without shadowing every visible microfacet reflects: the weights add up to 1."""
+    angles = (0.1, 20, 45, 65, 80, 87, 89.5)
+    cases = [  # distribution, masking, alpha, tail
+        (0, 0, 0.02, 0.3), (0, 0, 0.3, 1.0), (0, 1, 0.8, 3.5), (0, 2, 0.2, 1.5),
+        (1, 0, 0.3, 0.0), (2, 0, 0.2, 1.8), (2, 0, 0.5, 20.0), (3, 0, 0.2, 0.0),
+    ]  # fmt: skip
+    probe = tmp_path / "probe.osl"
+    probe.write_text(
+        PROBE.format(
+            angle_count=len(angles),
+            angles=", ".join(map(str, angles)),
+            case_count=4 * len(cases),
+            cases=", ".join(str(x) for case in cases for x in case),
+        )
+    )
+    result = run(
+        f"""
+sys.path.insert(0, {str(ROOT / "tests" / "osl")!r})
+from shading import *
+"""
+        + """
+angles, cases = ARGUMENTS["angles"], ARGUMENTS["cases"]
+# Pixels of a tile are random numbers for one angle and case.
+size = 16
+cycles(size * len(angles), size * len(cases), samples=64)
+mesh_object("Plane", [(0, 0, 0), (len(angles), 0, 0), (len(angles), len(cases), 0),
+                      (0, len(cases), 0)], [(0, 1, 2, 3)])
+view = camera((len(angles) / 2, len(cases) / 2, 3), (len(angles) / 2, len(cases) / 2, 0),
+              ortho_scale=max(len(angles), len(cases)))
+tree, output = material(bpy.data.objects["Plane"])
+probe = shader_node(tree, ARGUMENTS["probe"])
+show(tree, output, probe.outputs["Value"])
+picture = render()[::-1, :, 0].astype(float)
+tiles = picture.reshape(len(cases), size, len(angles), size).swapaxes(1, 2)
+tiles = tiles.reshape(len(cases), len(angles), -1)
+report(mean=tiles.mean(axis=-1), error=tiles.std(axis=-1) / size)
+""",
+        arguments={"angles": angles, "cases": cases, "probe": str(probe)},
+    )
+    mean, error = np.array(result["mean"]), np.array(result["error"])
+    z = (mean - 1) / np.hypot(error, TOLERANCE)
+    worst = np.unravel_index(np.argmax(np.abs(z)), z.shape)
+    assert np.abs(z).max() < 4.5, (cases[worst[0]], angles[worst[1]], mean[worst], error[worst])
