@@ -58,10 +58,10 @@ float ltmd_reflected_part(int ggx, vector q, vector v, float lambda, float ax, f
 // A random number with the albedo towards the viewer as its mean, for any alpha: over 8 pairs of
 // opposite slopes from the lobe's distribution, spread evenly. Its standard deviation is about 15 %.
 // Cycles has no closure for alpha > 1, which squeezes lead to; one with alpha = 1, scaled to the
-// albedo of the lobe, keeps light sampling.
+// albedo of the lobe, keeps light sampling. Beyond alpha = 4 hardly a facet reflects: it is as at 4.
 float ltmd_random_albedo(int ggx, LtmdSurface surface, float alpha)
 {
-    float ax = alpha * surface.scale_x, ay = alpha * surface.scale_y;
+    float ax = min(alpha * surface.scale_x, 4.0), ay = min(alpha * surface.scale_y, 4.0);
     vector X = surface.scale_x == surface.scale_y ? ltmd_frame_x(vector(0), surface.shading)
                                                   : surface.smooth;
     vector v = vector(dot(I, X), dot(I, cross(surface.shading, X)),

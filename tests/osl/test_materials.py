@@ -97,6 +97,7 @@ for module in (glossy, conductor, dielectric):
         camera((2.5, 2.5, 3 * side), (2.5, 2.5, 0), ortho_scale=5)
         pixels = render()[..., :3]
         cases.append(dict(name=f"{module.NAME} {mode} {lobes} {tension} {side}",
+                          squeezed=tension[0] < 1 or tension[1] > 100,
                           finite=bool(np.isfinite(pixels).all()), least=pixels.min(),
                           most=pixels.max()))
 report(cases=cases)
@@ -105,8 +106,9 @@ report(cases=cases)
     assert len(result["cases"]) == 18
     for case in result["cases"]:
         assert case["finite"], case
-        # Single scattering of the roughest surface loses half, and 16 samples are few.
-        assert case["least"] > 0.15, case
+        # Single scattering of the roughest surface loses half, and 16 samples are few; squeezed it
+        # loses nearly all.
+        assert case["least"] > (0 if case["squeezed"] else 0.15), case
         assert case["most"] < 1.3, case
 
 
@@ -156,7 +158,7 @@ def check_stack(shader, closures, code):
     lobes = {name: number for name, number in count.items() if number == 6}
     assert set(lobes) == closures
     text = (ROOT / "osl" / f"ltmd_{shader}.osl").read_text()
-    automatic = int(re.search(r"Lobes, Mode, (\d), lobes", text)[1])
+    automatic = int(re.search(r"PreserveEnergy,\s+(\d), lobes", text)[1])
     assert automatic == (5 if shader == "glossy" else 4)
     rest = BYTES["layer"] * count.get("layer", 0)
     size = max(BYTES[name] for name in lobes)
