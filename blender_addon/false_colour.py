@@ -6,7 +6,7 @@ the graph itself records what hiding restores.
 """
 
 from . import nodes, source, surface
-from .nodes import tension_view, tension_view_no_osl
+from .nodes import attribute_tension, tension_view, tension_view_no_osl
 
 PART = "view"  # of surface.KEY
 
@@ -35,7 +35,10 @@ def legend(view):
 
 
 def show(material, mode=0, limit=2.0, osl=True):
-    """Show the tension; mode: number in properties.VIEWS, limit: stretch of full colour."""
+    """Show the tension; mode: number in properties.VIEWS, limit: stretch of full colour.
+
+    Where EEVEE has its own output and the tension can be read there, it shows the colours too.
+    """
     tree = material.node_tree
     measured = next(
         (
@@ -48,9 +51,38 @@ def show(material, mode=0, limit=2.0, osl=True):
     if measured is None:
         raise source.SourceError(f"{material.name} has no LTMD node: press Set Up LTMD again")
     module = tension_view if osl else tension_view_no_osl
-    nodes.ensure(module)
+    for needed in (module, tension_view_no_osl):
+        nodes.ensure(needed)
     hide(material)
-    _insert(tree, tree.get_output_node("CYCLES"), module, measured, mode, limit)
+    wires = {
+        name: measured.inputs[name].links[0].from_socket
+        for name in ("Tension", "Tangent")
+        if measured.inputs[name].is_linked
+    }
+    cycles, eevee = (tree.get_output_node(engine) for engine in ("CYCLES", "EEVEE"))
+    _insert(tree, cycles, module, wires, mode, limit)
+    if eevee not in (None, cycles):
+        readable = _readable(material, wires)
+        if readable:
+            _insert(tree, eevee, tension_view_no_osl, {"Tension": readable}, mode, limit)
+    nodes.remove_unused()
+
+
+def _readable(material, wires):
+    """A socket with the tension for engines without OSL, or None."""
+    given = wires["Tension"].node if "Tension" in wires else None
+    if given is None or given.type != "GROUP":
+        return wires.get("Tension")
+    if nodes.without_osl(given.node_tree):
+        return wires["Tension"]
+    if given.node_tree.get(nodes.GROUP_KEY) == attribute_tension.NAME:
+        kept = material.node_tree.nodes.new("ShaderNodeAttribute")
+        kept.attribute_name = attribute_tension.ATTRIBUTE
+        kept.location = (given.location.x, given.location.y + 200)
+        return surface.own(kept, PART, given.parent).outputs["Vector"]
+    # An image holds the tension itself; UDIM tiles would have to be put together.
+    images = [n for n in surface.our_nodes(material, "source") if n.type == "TEX_IMAGE"]
+    return images[0].outputs["Color"] if len(images) == 1 else None
 
 
 def hide(material):
@@ -65,7 +97,7 @@ def hide(material):
         tree.nodes.remove(node)
 
 
-def _insert(tree, output, module, measured, mode, limit):
+def _insert(tree, output, module, wires, mode, limit):
     before = tree.nodes.active
     mix = surface.own(tree.nodes.new("ShaderNodeMixShader"), PART, output.parent)
     mix.inputs[0].default_value = 1.0
@@ -75,9 +107,8 @@ def _insert(tree, output, module, measured, mode, limit):
     view.location = (output.location.x - 260, output.location.y + 200)
     view.inputs["Mode"].default_value = mode
     view.inputs["Range"].default_value = limit
-    for name in ("Tension", "Tangent"):
-        if measured.inputs[name].is_linked:
-            tree.links.new(measured.inputs[name].links[0].from_socket, view.inputs[name])
+    for name, socket in wires.items():
+        tree.links.new(socket, view.inputs[name])
     if output.inputs["Surface"].is_linked:
         tree.links.new(output.inputs["Surface"].links[0].from_socket, mix.inputs[1])
     tree.links.new(view.outputs[0], mix.inputs[2])

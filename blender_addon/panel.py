@@ -148,9 +148,9 @@ def draw_tension(layout, context, material):
     view = false_colour.views(material)[0]
     layout.prop(material.ltmd, "view")
     column = layout.column(align=True)
-    column.prop(view.inputs["Range"], "default_value", text="Full Colour At")
+    column.prop(material.ltmd, "view_range")
     if material.ltmd.view == "DIRECTIONS":
-        column.prop(view.inputs["Density"], "default_value", text="Strokes")
+        column.prop(material.ltmd, "view_density")
     sentence(layout, context, false_colour.legend(view))
 
 

@@ -2,7 +2,14 @@
 """Settings kept in the file: Object.ltmd, Material.ltmd, Scene.ltmd."""
 
 import bpy
-from bpy.props import BoolProperty, EnumProperty, IntProperty, PointerProperty, StringProperty
+from bpy.props import (
+    BoolProperty,
+    EnumProperty,
+    FloatProperty,
+    IntProperty,
+    PointerProperty,
+    StringProperty,
+)
 
 from . import false_colour, presets, surface
 from .writable import is_writable
@@ -79,8 +86,28 @@ def _of_lobe(name):
     return sockets
 
 
-def _of_views(material):
-    return [view.inputs["Mode"] for view in false_colour.views(material)]
+def _of_views(name):
+    def sockets(material):
+        return [view.inputs[name] for view in false_colour.views(material)]
+
+    return sockets
+
+
+def _slider(name, description, sockets, low, high):
+    """One value for the same socket of several nodes."""
+
+    def get(self):
+        found = next(iter(sockets(self.id_data)), None)
+        return found.default_value if found else low
+
+    def choose(self, value):
+        if is_writable(self.id_data):
+            for socket in sockets(self.id_data):
+                socket.default_value = value
+
+    return FloatProperty(
+        name=name, description=description, min=low, max=high, get=get, set=choose, options=set()
+    )
 
 
 def _present_metal(self):
@@ -237,7 +264,21 @@ class LtmdMaterialSettings(bpy.types.PropertyGroup):
     mode: _numbered(
         "Mode", "How the highlights that shape the tail are rendered", MODES, _of_lobe("Mode")
     )
-    view: _numbered("View", "What the false colours show", VIEWS, _of_views)
+    view: _numbered("View", "What the false colours show", VIEWS, _of_views("Mode"))
+    view_range: _slider(
+        "Full Colour At",
+        "Factor of stretch (or of squeeze) that is shown in full colour",
+        _of_views("Range"),
+        1.001,
+        100.0,
+    )
+    view_density: _slider(
+        "Strokes",
+        "How many strokes fit along the longest side of the object",
+        _of_views("Density"),
+        1.0,
+        1000.0,
+    )
 
 
 CLASSES = (LtmdObjectSettings, LtmdMaterialSettings)

@@ -65,9 +65,35 @@ view.inputs["Tension"].default_value = (2, 0, 1)
 stock = view.node_tree.name, render()[2, 2, :3]
 scene.cycles.shading_system = True
 show(object_name=obj.name)
-report(out=out, values=values, loaded=loaded, again=again, shown=shown, plain=plain, back=back,
-       stock=stock, same=[before == hidden, before == dump(material)],
-       groups=[groups, len(bpy.data.node_groups)])
+same = [before == hidden, before == dump(material)]
+groups = [groups, len(bpy.data.node_groups)]
+
+# EEVEE has its own output, which the colours reach where they can be read without OSL.
+eevee = {}
+for kind in ("LIVE", "ATTRIBUTE", "TENSOR"):
+    bpy.ops.ltmd.setup(object_name=obj.name, source=kind)
+    now = dump(material)
+    show(object_name=obj.name, mode="AREA", range=3)
+    material.ltmd.view_range = 5
+    output = material.node_tree.get_output_node("EEVEE")
+    node = output.inputs["Surface"].links[0].from_node
+    view = node.inputs[2].links[0].from_node if node.type == "MIX_SHADER" else None
+    eevee[kind] = [node.type, len(false_colour.views(material))]
+    if view:
+        eevee[kind] += [view.node_tree["ltmd_group"], view.inputs["Range"].default_value,
+                        view.inputs["Tension"].links[0].from_node.type]
+        # In Cycles the attribute is there as well.
+        bpy.context.view_layer.update()
+        end = material.node_tree.nodes["LTMD Output"].inputs["Surface"]
+        kept = end.links[0].from_socket
+        material.node_tree.links.new(view.outputs[0], end)
+        view.inputs["Mode"].default_value, view.inputs["Range"].default_value = 0, 4
+        eevee[kind].append(render()[2, 2, :3])
+        material.node_tree.links.new(kept, end)
+    show(object_name=obj.name)
+    eevee[kind].append(dump(material) == now)
+report(eevee=eevee, out=out, values=values, loaded=loaded, again=again, shown=shown, plain=plain,
+       back=back, stock=stock, same=same, groups=groups)
 """
 )
 
@@ -87,6 +113,12 @@ def test_shown_and_hidden_again(tmp_path):
     name, pixel = found["stock"]
     assert name == "LTMD Tension View (no OSL)"
     assert np.allclose(pixel, found["out"]["MAGNITUDE"], atol=1e-6)
+    eevee = found["eevee"]
+    assert eevee["LIVE"] == ["BSDF_PRINCIPLED", 1, True]
+    assert eevee["TENSOR"] == ["BSDF_PRINCIPLED", 1, True]
+    *head, pixel, same = eevee["ATTRIBUTE"]
+    assert head == ["MIX_SHADER", 2, "LTMD Tension View (no OSL)", 5.0, "ATTRIBUTE"] and same
+    assert np.allclose(pixel, found["out"]["MAGNITUDE"], atol=1e-5)
 
 
 def test_remove_while_shown_shared_materials_and_refusals():
