@@ -5,6 +5,7 @@ import math
 
 import gallery
 import numpy as np
+import solids
 
 SEGMENTS, RINGS = 96, 80
 WAIST = -0.1
@@ -32,34 +33,12 @@ OUTLINE = np.array(
 )
 
 
-def smooth_outline(count):
-    """count points at equal distances on the centripetal Catmull-Rom curve through OUTLINE."""
-    before = OUTLINE[1] * (-1, 1)
-    points = np.vstack([before, OUTLINE, 2 * OUTLINE[-1] - OUTLINE[-2]])
-    knots = np.r_[0, np.cumsum(np.sqrt(np.linalg.norm(np.diff(points, axis=0), axis=1)))]
-    curve = []
-    for i in range(1, len(points) - 2):
-        level, t = points[i - 1 : i + 3], knots[i - 1 : i + 3]
-        s = np.linspace(t[1], t[2], 200, endpoint=False)[:, None]
-        level = [
-            level[k] + (s - t[k]) / (t[k + 1] - t[k]) * (level[k + 1] - level[k]) for k in range(3)
-        ]
-        level = [
-            level[k] + (s - t[k]) / (t[k + 2] - t[k]) * (level[k + 1] - level[k]) for k in range(2)
-        ]
-        curve.append(level[0] + (s - t[1]) / (t[2] - t[1]) * (level[1] - level[0]))
-    curve = np.vstack([*curve, OUTLINE[-1:]])
-    length = np.r_[0, np.cumsum(np.linalg.norm(np.diff(curve, axis=0), axis=1))]
-    return np.stack(
-        [np.interp(np.linspace(0, length[-1], count), length, c) for c in curve.T], axis=1
-    )
-
-
 def balloon_mesh():
     """A surface of revolution; u runs around it with the seam behind, v from the lip to the top."""
     import bpy
 
-    outline = smooth_outline(RINGS + 1)
+    before = OUTLINE[1] * (-1, 1)
+    outline = solids.smooth_curve(OUTLINE, RINGS + 1, before)
     angle = (np.arange(SEGMENTS) / SEGMENTS + 0.25) * 2 * math.pi
     around = np.stack([np.cos(angle), np.sin(angle)], axis=1)
     rings = [np.c_[radius * around, np.full(SEGMENTS, height)] for radius, height in outline[1:]]

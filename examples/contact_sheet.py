@@ -9,7 +9,7 @@ import matplotlib
 from PIL import Image, ImageDraw, ImageFont
 
 BACKDROP, INK, FAINT = (44, 48, 56), (240, 240, 240), (168, 174, 184)
-LABELS, TOP, BOTTOM, EDGE = 164, 96, 54, 14
+LABELS, EDGE, TITLE, CAPTIONS, LEGEND = 164, 14, 44, 52, 54
 FONTS = Path(matplotlib.get_data_path()) / "fonts" / "ttf"
 
 
@@ -36,28 +36,39 @@ def colour_at(ramp, x):
 
 
 def compose(sheet):
-    cells = [[Image.open(path).convert("RGBA") for path in paths] for _, _, paths in sheet["rows"]]
-    width, height = cells[0][0].size
-    size = (
-        LABELS + width * len(sheet["columns"]) + EDGE,
-        TOP + height * len(cells) + BOTTOM,
-    )
+    rows = sheet["rows"]
+    left = LABELS if any(row.get("name") for row in rows) else EDGE
+    cells = [[Image.open(path).convert("RGBA") for path in row["cells"]] for row in rows]
+    gap = sheet.get("gap", 0)
+    widths = [sum(cell.width for cell in row) + gap * (len(row) - 1) for row in cells]
+    tops, bottom = [], TITLE
+    for row, row_cells in zip(rows, cells, strict=True):
+        tops.append(bottom + (CAPTIONS if "captions" in row else 0))
+        bottom = tops[-1] + max(cell.height for cell in row_cells) + gap
+    legend_room = LEGEND if "legend" in sheet else EDGE
+    size = (left + max(widths) + EDGE, bottom - gap + legend_room)
     picture = Image.new("RGB", size, BACKDROP)
     draw = ImageDraw.Draw(picture)
     draw.text((EDGE, 14), sheet["title"], INK, font(19, bold=True))
-    for column, (caption, detail) in enumerate(sheet["columns"]):
-        middle = LABELS + width * (column + 0.5)
-        draw.text((middle, 60), caption, INK, font(16), anchor="mm")
-        draw.text((middle, 81), detail, FAINT, font(12), anchor="mm")
-    for row, (name, note, _) in enumerate(sheet["rows"]):
-        top = TOP + height * row
-        draw.line((EDGE, top, size[0] - EDGE, top), (70, 76, 88))
-        middle = top + height / 2
-        draw.text((EDGE, middle - 14), name, INK, font(15, bold=True), anchor="ls")
-        draw.multiline_text((EDGE, middle - 6), note, FAINT, font(12), spacing=5)
-        for column, cell in enumerate(cells[row]):
-            picture.paste(cell, (LABELS + width * column, top), cell)
-    legend(draw, sheet, size)
+    for row, row_cells, top in zip(rows, cells, tops, strict=True):
+        if not gap:
+            draw.line((EDGE, top, size[0] - EDGE, top), (70, 76, 88))
+        middle = top + row_cells[0].height / 2
+        draw.text((EDGE, middle - 14), row.get("name", ""), INK, font(15, bold=True), anchor="ls")
+        draw.multiline_text((EDGE, middle - 6), row.get("note", ""), FAINT, font(12), spacing=5)
+        x = left
+        for column, cell in enumerate(row_cells):
+            if "captions" in row:
+                caption, detail = row["captions"][column]
+                centre = x + cell.width / 2
+                draw.text((centre, top - 36), caption, INK, font(16), anchor="mm")
+                draw.text((centre, top - 15), detail, FAINT, font(12), anchor="mm")
+            picture.paste(cell, (x, top), cell)
+            if "insets" in row:
+                inset(picture, x + cell.width, top, row["insets"][column])
+            x += cell.width + gap
+    if "legend" in sheet:
+        legend(draw, sheet["legend"], left, size)
     return picture
 
 
@@ -78,11 +89,23 @@ def grid(sheet):
     return picture
 
 
-def legend(draw, sheet, size):
-    left, right, top = LABELS + 170, size[0] - EDGE - 170, size[1] - 34
+def inset(picture, right, top, lines):
+    """A sketch in the cell's upper right corner: lines of points in the unit square, y up."""
+    side, margin = 74, 10
+    width = side + 2 * margin
+    box = (right - width, top, right, top + width)
+    backdrop = Image.new("RGB", (width, width), BACKDROP)
+    picture.paste(Image.blend(picture.crop(box), backdrop, 0.75), box)
+    draw = ImageDraw.Draw(picture)
+    for line in lines:
+        draw.line([(box[0] + margin + side * x, box[3] - margin - side * y) for x, y in line], INK)
+
+
+def legend(draw, legend, labels, size):
+    left, right, top = labels + 170, size[0] - EDGE - 170, size[1] - 34
     for x in range(left, right):
-        draw.line((x, top, x, top + 14), colour_at(sheet["ramp"], (x - left) / (right - left - 1)))
-    low, middle, high = sheet["legend"]
+        draw.line((x, top, x, top + 14), colour_at(legend["ramp"], (x - left) / (right - left - 1)))
+    low, middle, high = legend["words"]
     small = font(12)
     draw.text((left - 10, top + 7), low, FAINT, small, anchor="rm")
     draw.text((right + 10, top + 7), high, FAINT, small, anchor="lm")

@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the example scenes share: the installed extension, the studio, the three rows of cells.
+"""What the example scenes share: the installed extension, the studio, the cells of the sheet.
 
 A scene module calls start() before anything else, because Blender reads the user folder when bpy
 is imported. The cells and a description of the sheet go to OUT; contact_sheet.py composes them.
 """
 
 import argparse
+import importlib
 import json
+import math
 import os
 import sys
 import time
@@ -31,12 +33,12 @@ def say(text):
     print(f"      {time.perf_counter() - _began:5.1f} s  {text}", file=sys.stderr, flush=True)
 
 
-def start(name):
+def start(name, samples=128):
     """The arguments; bpy with the extension installed in a clean user folder under OUT."""
     parser = argparse.ArgumentParser(prog=f"{name}.py")
     parser.add_argument("--extension", type=Path, required=True, help="the extension's zip")
     parser.add_argument("--out", type=Path, required=True, help="folder for everything made here")
-    parser.add_argument("--samples", type=int, default=128)
+    parser.add_argument("--samples", type=int, default=samples)
     parser.add_argument("--scale", type=float, default=1.0, help="size of the cells")
     args = parser.parse_args()
     args.name = name
@@ -76,18 +78,27 @@ def aim(obj, place, target):
     obj.rotation_euler = (Vector(target) - Vector(place)).to_track_quat("-Z", "Y").to_euler()
 
 
-def studio(args, size, view, target, height, lights):
-    """Camera, lights and a renderer with no denoiser and no filter that would touch a highlight."""
+def studio(args, size, view, target, height, lights, perspective=False):
+    """Camera, lights and a renderer with no denoiser and no filter that would touch a highlight.
+
+    height: what the picture shows at the target. lights: place, power, (width, length) and
+    perhaps a colour.
+    """
     import bpy
 
     scene = bpy.context.scene
     camera = link(bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera")))
-    camera.data.type = "ORTHO"
-    camera.data.ortho_scale = height * max(1, size[0] / size[1])
+    width = height * max(1, size[0] / size[1])
+    if perspective:
+        camera.data.angle = 2 * math.atan(width / 2 / math.dist(view, target))
+    else:
+        camera.data.type = "ORTHO"
+        camera.data.ortho_scale = width
     aim(camera, view, target)
     scene.camera = camera
-    for place, power, (width, length) in lights:
+    for place, power, (width, length), *colour in lights:
         lamp = bpy.data.lights.new("Light", "AREA")
+        lamp.color = colour[0] if colour else (1, 1, 1)
         lamp.energy, lamp.shape, lamp.size, lamp.size_y = power, "RECTANGLE", width, length
         aim(link(bpy.data.objects.new("Light", lamp)), place, target)
     world = scene.world = bpy.data.worlds.new("World")
@@ -125,35 +136,95 @@ def paint(name, colour, roughness, metallic=0.0, ior=1.5):
     return material
 
 
+def nodes_of(owner):
+    """The owner's node tree emptied: owner, node(kind, *sources, **settings), maths(operation, …).
+
+    A source is a socket to link or a value, for the node's inputs in their order. A kind that is a
+    module of the extension's folder nodes, in small letters, gives that group, and its settings are
+    its inputs by name.
+    """
+    import bpy
+
+    owner.use_nodes = True
+    tree = owner.node_tree
+    tree.nodes.clear()
+
+    def give(socket, source):
+        if isinstance(source, bpy.types.NodeSocket):
+            tree.links.new(source, socket)
+        elif source is not None:
+            socket.default_value = source
+
+    def node(kind, *sources, **settings):
+        if kind.islower():
+            groups = importlib.import_module(f"{EXTENSION}.nodes")
+            made = groups.group_node(tree, importlib.import_module(f"{EXTENSION}.nodes.{kind}"))
+            for name, source in settings.items():
+                give(made.inputs[name.replace("_", " ")], source)
+        else:
+            made = tree.nodes.new(kind)
+            for key, value in settings.items():
+                setattr(made, key, value)
+        for socket, source in zip(made.inputs, sources, strict=False):
+            give(socket, source)
+        return made
+
+    def maths(operation, *sources, **settings):
+        return node("ShaderNodeMath", *sources, operation=operation, **settings).outputs[0]
+
+    return owner, node, maths
+
+
+def stage(colour, sky, depth=6.0):
+    """A matt floor at z = 0 that rises to a wall behind, under a sky of (height, grey).
+
+    Nothing is clamped.
+    """
+    import bpy
+
+    scene = bpy.context.scene
+    bend = [i * math.pi / 48 for i in range(25)]
+    outline = [(-60, 0), *((depth + 4 * math.sin(t), 4 - 4 * math.cos(t)) for t in bend)]
+    outline.append((depth + 4, 60))
+    positions = [(x, y, z) for y, z in outline for x in (-60, 60)]
+    faces = [(i, i + 1, i + 3, i + 2) for i in range(0, len(positions) - 2, 2)]
+    mesh = bpy.data.meshes.new("Stage")
+    mesh.from_pydata(positions, [], faces)
+    mesh.shade_smooth()
+    link(bpy.data.objects.new("Stage", mesh))
+    matt, node, _ = nodes_of(bpy.data.materials.new("Stage"))
+    node("ShaderNodeOutputMaterial", node("ShaderNodeBsdfDiffuse", (*colour, 1)).outputs[0])
+    mesh.materials.append(matt)
+    _, node, _ = nodes_of(scene.world)
+    up = node("ShaderNodeSeparateXYZ", node("ShaderNodeTexCoord").outputs["Generated"]).outputs["Z"]
+    ramp = node("ShaderNodeValToRGB", up)
+    elements = ramp.color_ramp.elements
+    while len(elements) < len(sky):
+        elements.new(1)
+    for element, (height, grey) in zip(elements, sky, strict=True):
+        element.position = height
+        element.color = (0.92 * grey, grey, 1.15 * grey, 1)
+    node("ShaderNodeOutputWorld", node("ShaderNodeBackground", ramp.outputs["Color"]).outputs[0])
+    scene.cycles.shading_system = True
+    # A smooth sky needs no samples of its own: the lamps get them all.
+    scene.world.cycles.sampling_method = "NONE"
+    scene.cycles.sample_clamp_indirect = 0
+    # Light that metal throws on the floor would be noise; highlights do not depend on it.
+    scene.cycles.caustics_reflective = False
+    scene.view_settings.view_transform = "AgX"
+    scene.view_settings.look = "AgX - Medium High Contrast"
+    scene.render.film_transparent = False
+
+
 def linear(srgb):
     return [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in srgb]
 
 
 def area_colours(files, first, last, lines=0):
     """A material that shows the area ratio t11 · t22 of baked images, read by stock nodes."""
-    import math
-
     import bpy
 
-    material = bpy.data.materials.new("Baked tension")
-    material.use_nodes = True
-    tree = material.node_tree
-    tree.nodes.clear()
-
-    def node(kind, *sources, **settings):
-        made = tree.nodes.new(kind)
-        for key, value in settings.items():
-            setattr(made, key, value)
-        for socket, source in zip(made.inputs, sources, strict=False):
-            if isinstance(source, bpy.types.NodeSocket):
-                tree.links.new(source, socket)
-            elif source is not None:
-                socket.default_value = source
-        return made
-
-    def maths(operation, *sources, **settings):
-        return node("ShaderNodeMath", *sources, operation=operation, **settings).outputs[0]
-
+    material, node, maths = nodes_of(bpy.data.materials.new("Baked tension"))
     image = bpy.data.images.load(str(files[first]))
     image.source = "SEQUENCE"
     image.colorspace_settings.is_data = True
@@ -240,16 +311,22 @@ def render_row(args, row, frames, words):
     """One picture per frame; their paths."""
     import bpy
 
-    scene = bpy.context.scene
     say(f"rendering {len(frames)} frames, {words}")
     paths = []
     for frame in frames:
-        scene.frame_set(frame)
-        path = args.out / "cells" / f"{row}_{frame:04d}.png"
-        scene.render.filepath = str(path)
-        bpy.ops.render.render(write_still=True)
-        paths.append(str(path))
+        bpy.context.scene.frame_set(frame)
+        paths.append(render(args, f"{row}_{frame:04d}"))
     return paths
+
+
+def render(args, name):
+    """The scene as it is now, as a cell of the sheet; its path."""
+    import bpy
+
+    path = args.out / "cells" / f"{name}.png"
+    bpy.context.scene.render.filepath = str(path)
+    bpy.ops.render.render(write_still=True)
+    return str(path)
 
 
 def present(obj, args, title, columns, size, lines=0):
@@ -280,36 +357,40 @@ def three_rows(obj, args, title, columns, files, first, last, lines):
     material = obj.active_material
     set_strength(material, 0)
     rows = [
-        (
-            "Plain material",
-            "same roughness\neverywhere",
-            render_row(args, "plain", frames, "plain material"),
-        )
+        {
+            "name": "Plain material",
+            "note": "same roughness\neverywhere",
+            "captions": [[caption, stretch_words(*ranges[frame])] for frame, caption in columns],
+            "cells": render_row(args, "plain", frames, "plain material"),
+        }
     ]
     set_strength(material, 1)
     rows.append(
-        (
-            "With LTMD",
-            "stretched: glossier\nsqueezed: duller",
-            render_row(args, "ltmd", frames, "with LTMD"),
-        )
+        {
+            "name": "With LTMD",
+            "note": "stretched: glossier\nsqueezed: duller",
+            "cells": render_row(args, "ltmd", frames, "with LTMD"),
+        }
     )
     bpy.ops.wm.save_mainfile()
 
     obj.active_material = area_colours(files, first, last, lines)
     scene.cycles.samples = 16
     rows.append(
-        (
-            "Measured",
-            "change of area, from\nthe baked images",
-            render_row(args, "measured", frames, "false colours"),
-        )
+        {
+            "name": "Measured",
+            "note": "change of area, from\nthe baked images",
+            "cells": render_row(args, "measured", frames, "false colours"),
+        }
     )
-    sheet = {
-        "title": title,
-        "columns": [[caption, stretch_words(*ranges[frame])] for frame, caption in columns],
-        "rows": rows,
+    legend = {
         "ramp": RAMP,
-        "legend": ["a third of the area", "as at rest", "three times the area"],
+        "words": ["a third of the area", "as at rest", "three times the area"],
     }
+    write_sheet(args, title, rows, legend=legend)
+
+
+def write_sheet(args, title, rows, **more):
+    """What contact_sheet.py composes: rows of name, note, cells (paths), captions and insets."""
+    sheet = {"title": title, "rows": rows, **more}
     (args.out / "sheet.json").write_text(json.dumps(sheet, indent=1))
