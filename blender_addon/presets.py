@@ -65,7 +65,7 @@ def _conductor(label, metal, roughness, source, **sockets):
 
 def _vase(alpha, tail):
     return _conductor(
-        f"Vase: Aluminium {alpha:g}, Tail {tail:g}",
+        f"Vase {alpha:g}, Tail {tail:g}",
         "Aluminium",
         _roughness(alpha),
         f"{_PAPER}, Fig. 8: alpha {alpha:g}, gamma {tail:g}, stretch 5/2",

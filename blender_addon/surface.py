@@ -66,9 +66,10 @@ def roughest(node):
     squeeze = widest ** (1 / power) if power > 0 else 0
     if squeeze < 1 / 3:
         return None
+    halo = "; the halo's earlier" if "Tail" in inputs and inputs["Tail"].default_value < 2 else ""
     return (
-        f"Squeezed below {squeeze:.0%} of its length, the surface gets no duller: the roughness of "
-        "Cycles ends there"
+        f"Where the surface is squeezed below {squeeze:.0%} of its length, the highlight gets "
+        f"dimmer but no wider: the roughness of Cycles ends there{halo}"
     )
 
 

@@ -13,7 +13,7 @@ import math
 import gallery
 import numpy as np
 
-SIZE = (240, 210)
+SIZE = (196, 172)
 AROUND, ALONG = 128, 160
 HALF, RADIUS = 0.95, 0.5
 
