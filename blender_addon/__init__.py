@@ -10,6 +10,7 @@ _NAMES = (
     "show_tension",
     "versions",
     "apply_preset",
+    "add_node",
     "bake",
     "command",
     "panel",

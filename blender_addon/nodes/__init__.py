@@ -38,9 +38,10 @@ def without_osl(group):
 
 
 def group_node(tree, module):
-    """A new node in `tree` that shows the group."""
+    """A new node in `tree` that shows the group. Raises RuntimeError; then there is none."""
+    group = ensure(module)
     node = tree.nodes.new("ShaderNodeGroup")
-    node.node_tree = ensure(module)
+    node.node_tree = group
     node.label = node.name = module.NAME
     node.width = 200
     return node
