@@ -160,8 +160,12 @@ void ltmd_visible_weights(LtmdSurface surface, output LtmdLobes lobes)
 void ltmd_lobe_energy(LtmdSurface surface, float preserve_energy, output LtmdLobes lobes)
 {
     lobes.gain = 1;
-    float roughest = max(max(max(lobes.alpha0, lobes.alpha1), max(lobes.alpha2, lobes.alpha3)),
-                         max(lobes.alpha4, lobes.alpha5));
+    float roughest = 0;
+    // Lobes of less weight change nothing that is seen.
+#define LTMD_ROUGHEST(i)                                                                          \
+    if (lobes.weight##i > 0.01)                                                                   \
+        roughest = max(roughest, lobes.alpha##i);
+    LTMD_EACH_LOBE(LTMD_ROUGHEST)
     if (preserve_energy > 0 || roughest * surface.scale_y > 1) {
         // A loop, as functions are copied to where they are called.
         float alphas[6] = { lobes.alpha0, lobes.alpha1, lobes.alpha2,
@@ -170,7 +174,7 @@ void ltmd_lobe_energy(LtmdSurface surface, float preserve_energy, output LtmdLob
                              lobes.weight3, lobes.weight4, lobes.weight5 };
         float albedo = 0;
         for (int i = 0; i < 6; i += 1) {
-            int rough = alphas[i] * surface.scale_y > 1;
+            int rough = weights[i] > 0.01 && alphas[i] * surface.scale_y > 1;
             if (weights[i] > 0 && (rough || preserve_energy > 0)) {
                 float gain = ltmd_closure_gain(i < lobes.ggx, surface, alphas[i]);
                 albedo += weights[i] / gain;
