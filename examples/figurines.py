@@ -86,14 +86,14 @@ def smooth(x, low, high):
 
 def tall(p):
     """Pulled up, slim in the middle."""
-    slim = 1 - 0.30 * np.sin(np.pi * np.clip(p[:, 2] / 1.5, 0, 1))
-    return np.c_[p[:, :2] * slim[:, None], p[:, 2] * 1.55]
+    slim = 1 - 0.36 * np.sin(np.pi * np.clip(p[:, 2] / 1.5, 0, 1))
+    return np.c_[p[:, :2] * slim[:, None], p[:, 2] * 1.65]
 
 
 def squashed(p):
-    """Pressed down to 62 %, bulging at the sides."""
-    wide = 1.12 + 0.2 * np.sin(np.pi * np.clip(p[:, 2] / 1.5, 0, 1))
-    return np.c_[p[:, :2] * wide[:, None], p[:, 2] * 0.62]
+    """Pressed down to 57 %, bulging at the sides."""
+    wide = 1.15 + 0.2 * np.sin(np.pi * np.clip(p[:, 2] / 1.5, 0, 1))
+    return np.c_[p[:, :2] * wide[:, None], p[:, 2] * 0.57]
 
 
 def inflated(p):
@@ -125,9 +125,9 @@ ROW = [
 ]
 # Details: what, left, bottom and side in pixels of the picture.
 DETAILS = [
-    ("pulled up", 200, 140, 100),
+    ("pulled up", 200, 140, 110),
     ("blown up", 375, 90, 120),
-    ("pressed down", 566, 40, 105),
+    ("pressed down", 566, 36, 100),
     ("wrung", 913, 60, 80),
 ]
 
@@ -208,12 +208,12 @@ def main():
         target=(0.1, 0, 1.13),
         height=2.9,
         lights=[
-            ((-8, -16, 13), 42000, (1.2, 1.2)),
+            ((-8, -16, 13), 50000, (1.2, 1.2)),
             ((16, 4, 5), 3500, (1, 8), (0.8, 0.9, 1)),
             ((-16, 4, 5), 4500, (1, 8), (0.8, 0.9, 1)),
         ],
     )
-    gallery.stage((0.012, 0.013, 0.017), sky=[(0, 0.04), (1, 0.10)])
+    gallery.stage((0.012, 0.013, 0.017), sky=[(0, 0.028), (1, 0.08)])
     gallery.say("modelling the figures")
     materials = add_figures()
     rows = {}

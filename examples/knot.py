@@ -96,7 +96,7 @@ def main():
             material.node_tree.links.new(shader, output.inputs["Surface"])
             cells.append(gallery.render(args, f"alpha{alpha}_{name.replace(' ', '_')}"))
         rows.append({"name": f"Alpha {alpha:g}", "cells": cells})
-    rows[0]["note"] = "the paper's knot;\nstock nodes mixed\nto match the tail"
+    rows[0]["note"] = "the paper's knot;\nthe mix fits this tail,\nbut shines too much"
     rows[1]["note"] = "the roughness is\nturned down"
     rows[0]["captions"] = [
         ("LTMD Glossy, tail 1", "one node"),
