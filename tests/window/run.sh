@@ -51,7 +51,7 @@ window() {
     local case=$1 log=$WORK/$1.log status=0
     ltmd_as_root rm -rf "$SID/ltmd/user" "$SID/ltmd/out-$case"
     ltmd_as_root mkdir -p "$SID/ltmd/user" "$SID/ltmd/out-$case"
-    [ ! -e "$WORK/scene.blend" ] || ltmd_as_root cp "$WORK/scene.blend" "$SID/ltmd/out-$case/"
+    [ ! -e "$WORK/scene.blend" ] || ltmd_as_root cp "$WORK"/{scene,shown}.blend "$SID/ltmd/out-$case/"
     # A namespace of its own: /proc is gone from the root again when this ends.
     ltmd_as_root unshare --mount sh -c "mount --bind /proc '$SID/proc' && exec chroot '$SID' env \
         HOME=/ltmd/user BLENDER_USER_RESOURCES=/ltmd/user LIBGL_ALWAYS_SOFTWARE=1 LC_ALL=C.UTF-8 \

@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""scene.py ADDON_FOLDER OUT.blend: a shape that stretches, set up; by a Python that has bpy."""
+"""scene.py ADDON_FOLDER OUT.blend: a shape that stretches, set up; by a Python that has bpy.
+
+Beside it shown.blend, the picture of the manual: a preset, and the tension in false colour.
+"""
 
 import os
 import sys
@@ -30,5 +33,9 @@ bpy.ops.ltmd.setup(object_name=obj.name)
 # A Blender without OSL cannot compile it when the bake turns the material to the images.
 nodes.ensure(texture_tension).use_fake_user = True
 bpy.ops.wm.save_as_mainfile(filepath=sys.argv[2])
+bpy.ops.ltmd.setup(object_name=obj.name, source="ATTRIBUTE")
+bpy.ops.ltmd.preset(object_name=obj.name, preset="BRUSHED_GOLD")
+bpy.ops.ltmd.show_tension(object_name=obj.name, mode="AREA")
+bpy.ops.wm.save_as_mainfile(filepath=os.path.join(os.path.dirname(sys.argv[2]), "shown.blend"))
 sys.stdout.flush()
 os._exit(0)

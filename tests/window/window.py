@@ -242,15 +242,19 @@ def steps():
         True,
         "Renders on the CPU with Open Shading Language",
     )
-    bpy.ops.wm.open_mainfile(filepath=str(OUT / "scene.blend"))
+    bpy.ops.wm.open_mainfile(filepath=str(OUT / "shown.blend"))
     yield 0.5
     bpy.context.scene.frame_set(20)
     yield from show_panels()
+    words = " ".join(sum(drawn.values(), []))
+    assert "Attribute" in words and "Red: 2 times the area" in words, words
     view = area("VIEW_3D")
+    view.spaces.active.shading.type = "MATERIAL"
     region = next(r for r in view.regions if r.type == "WINDOW")
     with bpy.context.temp_override(area=view, region=region):
         bpy.ops.view3d.view_selected()
-    yield 2.0
+    for _ in range(40):  # EEVEE compiles its shaders meanwhile
+        yield 1.0
     picture("panel")
 
 
