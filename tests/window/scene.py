@@ -35,7 +35,7 @@ nodes.ensure(texture_tension).use_fake_user = True
 bpy.ops.wm.save_as_mainfile(filepath=sys.argv[2])
 bpy.ops.ltmd.setup(object_name=obj.name, source="ATTRIBUTE")
 bpy.ops.ltmd.preset(object_name=obj.name, preset="BRUSHED_GOLD")
-bpy.ops.ltmd.show_tension(object_name=obj.name, mode="AREA")
+bpy.ops.ltmd.show_tension(object_name=obj.name, mode="MAGNITUDE", range=1.5)
 bpy.ops.wm.save_as_mainfile(filepath=os.path.join(os.path.dirname(sys.argv[2]), "shown.blend"))
 sys.stdout.flush()
 os._exit(0)

@@ -247,7 +247,7 @@ def steps():
     bpy.context.scene.frame_set(20)
     yield from show_panels()
     words = " ".join(sum(drawn.values(), []))
-    assert "Attribute" in words and "Red: 2 times the area" in words, words
+    assert "Attribute" in words and "Red: 1.5 times the length" in words, words
     view = area("VIEW_3D")
     view.spaces.active.shading.type = "MATERIAL"
     region = next(r for r in view.regions if r.type == "WINDOW")
