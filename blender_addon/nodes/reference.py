@@ -16,8 +16,8 @@ def build(tree):
         tree,
         "BSDF",
         "Shader",
-        "Exact and noisy: light comes from lamps with a size, the world and other surfaces, not "
-        "from point lamps. Switch Bump Map Correction off in the material's settings",
+        "Exact and noisy. It is lit by the world, other surfaces and lamps with a size; point "
+        "lamps and suns without an angle leave it dark",
     )
     add_input(
         tree, "Color", "Color", "How much of each colour is reflected, or the tint of glass",

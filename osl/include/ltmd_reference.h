@@ -370,14 +370,15 @@ normal ltmd_random_normal(LtmdFacets facets, LtmdDistribution d, int masking, ou
     return normalize((normal)(q[0] * facets.a + q[1] * facets.b) + facets.shading);
 }
 
-// The weight without F of reflection(m), or of refraction into the direction `other`.
+// The weight without F of reflection(m), or of refraction into the direction `other` where `side`
+// is -1.
 float ltmd_facet_weight(LtmdFacets facets, LtmdDistribution d, int masking, vector q, float facing,
-                        vector other)
+                        vector other, int side)
 {
     vector o = ltmd_at_rest(facets, other);
-    // A direction must be on the same side of the shading and of the true surface.
+    // A direction must be on its side of the shading and of the true surface.
     float weight = 0;
-    if (o[2] * dot(Ng, other) > 0)
+    if (side * o[2] > 0 && side * dot(Ng, other) > 0)
         weight = facing * ltmd_masking(d, masking, ltmd_at_rest(facets, I), o, q);
     return weight;
 }
@@ -395,6 +396,7 @@ int ltmd_reference_normal(LtmdSurface surface, float alpha, float gamma, output 
     vector q;
     float facing;
     m = ltmd_random_normal(facets, d, LTMD_HEIGHT_CORRELATED, q, facing);
-    weight = ltmd_facet_weight(facets, d, LTMD_HEIGHT_CORRELATED, q, facing, 2 * dot(I, m) * m - I);
+    weight = ltmd_facet_weight(facets, d, LTMD_HEIGHT_CORRELATED, q, facing,
+                               2 * dot(I, m) * m - I, 1);
     return weight > 0;
 }

@@ -47,10 +47,7 @@ def scene(views, samples, attributes):
     view = camera((side / 2, side / 2, 500), (side / 2, side / 2, 0), ortho_scale=side)
     view.data.clip_end = 1000
     _light()
-    tree, output = material(obj)
-    # It turns normals that reflect below the horizon instead of leaving their light out.
-    obj.data.materials[0].cycles.use_bump_map_correction = False
-    return tree, output
+    return material(obj)
 
 
 def _light():
