@@ -7,6 +7,7 @@ _NAMES = (
     "properties",
     "evaluate",
     "setup",
+    "convert",
     "show_tension",
     "versions",
     "apply_preset",

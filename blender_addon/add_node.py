@@ -4,7 +4,7 @@
 import bpy
 from bpy.props import EnumProperty, StringProperty
 
-from . import nodes, setup, versions
+from . import device, nodes, versions
 from .writable import REFUSAL, is_local
 
 # None: a separator.
@@ -67,7 +67,7 @@ class LTMD_OT_add_node(bpy.types.Operator):
             return {"CANCELLED"}
         known = versions.modules()
         name = self.node
-        if not setup.osl_status(context)[0] and f"{name} (no OSL)" in known:
+        if not device.uses_osl(context) and f"{name} (no OSL)" in known:
             name = f"{name} (no OSL)"
         try:
             node = nodes.group_node(tree, known[name])

@@ -15,9 +15,9 @@ def apply(material, preset):
     be made here.
     """
     node = surface.lobe(material)
-    if node is None:
+    if node is None or surface.lobe_kind(node) not in surface.LOBES:
         raise source.SourceError(
-            f"{material.name} has no LTMD highlight for a preset to set: press Set Up LTMD first"
+            f"{material.name} has no LTMD highlight for a preset to set: convert it by replacing"
         )
     module = preset.group
     if nodes.without_osl(node.node_tree):

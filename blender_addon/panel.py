@@ -5,7 +5,7 @@ import textwrap
 
 import bpy
 
-from . import false_colour, library, setup, source, surface, versions
+from . import device, drive, false_colour, library, source, surface, versions
 from .properties import SOURCES
 from .writable import REFUSAL, is_writable
 
@@ -43,7 +43,7 @@ def draw(layout, context):
         sentence(layout, context, "LTMD works on mesh objects")
         return
 
-    good, words = setup.osl_status(context)
+    good, words = device.osl_status(context)
     sentence(layout, context, words, icon="NONE" if good else "ERROR")
     sentence(layout, context, state(obj))
     if obj.ltmd.source == "LIVE":
@@ -58,6 +58,12 @@ def draw(layout, context):
         limits = source.texture_limits(obj, context.scene.frame_current)
         if limits:
             sentence(layout, context, limits, icon="INFO")
+    for material in source.materials(obj):
+        words = device.mismatch(material, context)
+        if words:
+            sentence(layout, context, words, icon="ERROR")
+            layout.operator("ltmd.setup", text="Update for This Device").object_name = ""
+            break
     if not is_writable(obj):
         sentence(layout, context, REFUSAL, icon="ERROR")
 
@@ -67,6 +73,7 @@ def draw(layout, context):
         row.operator("ltmd.remove", text="Remove").object_name = ""
         name = next(item[1] for item in SOURCES if item[0] == obj.ltmd.source)
         layout.operator_menu_enum("ltmd.setup", "source", text=f"Source: {name}")
+    layout.operator_menu_enum("ltmd.convert_material", "method")
 
     draw_older(layout, context)
     material = shown_material(obj)
@@ -105,7 +112,7 @@ def draw_material(layout, context, material):
         return
     header = layout.row()
     header.label(text=material.name, icon="MATERIAL")
-    if material == context.object.active_material:
+    if material == context.object.active_material and not drive.is_driven(material):
         header.operator_menu_enum("ltmd.preset", "preset", text="Preset")
     settings = material.ltmd
     body = layout.column()
@@ -127,7 +134,7 @@ def draw_material(layout, context, material):
     sliders(column, node, ("Stretch", "Rotation", "Shear"))
     column = body.column(align=True)
     sliders(column, node, ("Strength", "Height Response"))
-    words = surface.roughest(node)
+    words = drive.limits(material) if drive.is_driven(material) else surface.roughest(node)
     if words:
         sentence(layout, context, words, icon="INFO")
     header, body = layout.panel("LTMD_quality", default_closed=True)

@@ -4,36 +4,9 @@
 import bpy
 from bpy.props import BoolProperty, EnumProperty, StringProperty
 
-from . import false_colour, modifier, nodes, source, surface
+from . import device, drive, false_colour, modifier, nodes, source, surface
 from .properties import SOURCES
-from .writable import REFUSAL, is_writable
-
-
-def osl_on(scene):
-    """Is the scene rendered by Cycles with Open Shading Language?"""
-    return scene.render.engine == "CYCLES" and scene.cycles.shading_system
-
-
-def osl_status(context):
-    """(will this scene's renders use OSL, a sentence that says so or what is in the way)."""
-    scene = context.scene
-    if not bpy.app.build_options.cycles_osl:
-        return False, "This Blender is built without Open Shading Language: LTMD cannot render"
-    if scene.render.engine != "CYCLES":
-        return False, "The render engine is not Cycles: a plain material is shown"
-    if not scene.cycles.shading_system:
-        return False, "Open Shading Language is off: LTMD materials render black in Cycles"
-    if scene.cycles.device == "GPU":
-        addon = context.preferences.addons.get("cycles")
-        kind = addon.preferences.compute_device_type if addon else "NONE"
-        if kind == "OPTIX":
-            return True, "Renders on the GPU (OptiX) with Open Shading Language"
-        if kind != "NONE":
-            return False, (
-                f"{kind} devices cannot use Open Shading Language, so LTMD materials render "
-                "black: choose OptiX or the CPU"
-            )
-    return True, "Renders on the CPU with Open Shading Language"
+from .writable import NODES_REFUSAL, REFUSAL, is_local, is_writable
 
 
 def target_objects(context, name):
@@ -54,37 +27,60 @@ def target_objects(context, name):
     return meshes
 
 
-def set_up(obj, kind="PRESENT"):
+def set_up(obj, kind="PRESENT", osl=True, method=None):
     """Set up one object; return sentences for the user. Raises SourceError.
 
     kind: the source; PRESENT keeps the one the object has, and is live on a new one.
+    osl: take the groups in Open Shading Language, or their twins of stock nodes.
+    method: how materials follow, of drive or surface; None leaves those that are set up as they
+    are, and replaces the others' reflection.
     """
     if not is_writable(obj):
         raise source.SourceError(f"{obj.name}: {REFUSAL}")
-    if not bpy.app.build_options.cycles_osl:
-        raise source.SourceError(
-            "This Blender is built without Open Shading Language, which LTMD materials need; "
-            "the builds of blender.org have it"
-        )
     if kind == "PRESENT":
         kind = "LIVE" if obj.ltmd.source == "NONE" else obj.ltmd.source
     textures = kind == "TEXTURE"
-    told = source.measure(obj, "LIVE" if textures else kind)
     if not any(slot.material for slot in obj.material_slots):
         _new_material(obj)
+    told = source.measure(obj, "LIVE" if textures else kind)
+    refused, done = [], 0
     for material in list(dict.fromkeys(s.material for s in obj.material_slots if s.material)):
-        if not is_writable(material) or material.override_library:
+        if not is_local(material):
+            if method:
+                refused.append(f"{material.name}: {NODES_REFUSAL}")
+                continue
             # The node tree of linked data cannot be changed; a slot of the object can.
             linked, material = material, source.own_copy(obj, material)
             told.append(f"{obj.name} has its own copy of the linked material {linked.name} now")
-        if surface.is_set_up(material):
-            if textures:
-                continue
-        else:
-            told += surface.add(material)
-        told += source.switch(obj, material, "LIVE" if textures else kind)
+        try:
+            had_source, sentences = _follow(material, method, osl)
+        except source.SourceError as error:
+            refused.append(str(error))
+            continue
+        told += sentences
+        done += 1
+        if not (textures and had_source):
+            told += source.switch(obj, material, "LIVE" if textures else kind)
+    if not done:
+        if obj.ltmd.source == "NONE":
+            _forget(obj)
+        raise source.SourceError("; ".join(refused))
     obj.ltmd.source = kind
-    return told
+    for material in source.materials(obj):
+        device.match(material, osl)
+    return told + refused
+
+
+def _follow(material, method, osl):
+    """Let the material follow by the method; (had it been set up before, sentences)."""
+    add = drive.drive if method == drive.METHOD else lambda m: surface.add(m, osl)
+    if not surface.is_set_up(material):
+        return False, add(material)
+    present = drive.METHOD if drive.is_driven(material) else surface.METHOD
+    if method in (None, present):
+        return True, []
+    false_colour.hide(material)
+    return True, surface.exchange(material, add)
 
 
 def remove(obj):
@@ -177,18 +173,44 @@ class OnObjects:
         """When all objects are done."""
 
 
-class LTMD_OT_setup(OnObjects, bpy.types.Operator):
+class SettingUp(OnObjects):
+    use_osl: BoolProperty(
+        name="Cycles with Open Shading Language",
+        description="Switch this scene to Cycles with Open Shading Language, if its device can. "
+        "Without it stock nodes are used, which have no live tension",
+        default=True,
+    )
+
+    def invoke(self, context, event):
+        if self.osl(context) and not device.osl_on(context.scene):
+            return context.window_manager.invoke_confirm(
+                self,
+                event,
+                title=self.bl_label,
+                message="This scene will render in Cycles with Open Shading Language",
+                confirm_text="Set Up",
+            )
+        return self.execute(context)
+
+    def osl(self, context):
+        """Will the scene render with Open Shading Language?"""
+        return device.has_osl(context) and (self.use_osl or device.osl_on(context.scene))
+
+    def after(self, context, done):
+        scene = context.scene
+        if self.osl(context) and not device.osl_on(scene):
+            scene.render.engine = "CYCLES"
+            scene.cycles.shading_system = True
+        good, sentence = device.osl_status(context)
+        self.report({"INFO"} if good else {"WARNING"}, sentence)
+
+
+class LTMD_OT_setup(SettingUp, bpy.types.Operator):
     """Make the highlights of the selected objects follow their deformation"""
 
     bl_idname = "ltmd.setup"
     bl_label = "Set Up LTMD"
     bl_options = {"REGISTER", "UNDO"}
-
-    use_osl: BoolProperty(
-        name="Cycles with Open Shading Language",
-        description="Switch this scene to Cycles with Open Shading Language, which LTMD needs",
-        default=True,
-    )
 
     source: EnumProperty(
         name="Source",
@@ -201,27 +223,8 @@ class LTMD_OT_setup(OnObjects, bpy.types.Operator):
         options={"SKIP_SAVE"},
     )
 
-    def invoke(self, context, event):
-        if self.use_osl and not osl_on(context.scene):
-            return context.window_manager.invoke_confirm(
-                self,
-                event,
-                title="Set Up LTMD",
-                message="This scene will render in Cycles with Open Shading Language",
-                confirm_text="Set Up",
-            )
-        return self.execute(context)
-
     def work(self, obj):
-        return set_up(obj, self.source)
-
-    def after(self, context, done):
-        scene = context.scene
-        if self.use_osl and not osl_on(scene):
-            scene.render.engine = "CYCLES"
-            scene.cycles.shading_system = True
-        good, sentence = osl_status(context)
-        self.report({"INFO"} if good else {"WARNING"}, sentence)
+        return set_up(obj, self.source, self.osl(bpy.context))
 
 
 class LTMD_OT_store_tension(OnObjects, bpy.types.Operator):

@@ -4,7 +4,7 @@
 import bpy
 from bpy.props import EnumProperty, FloatProperty
 
-from . import false_colour, nodes, setup, source
+from . import device, false_colour, nodes, setup, source
 from .properties import VIEWS
 from .writable import REFUSAL, is_local
 
@@ -50,7 +50,7 @@ class LTMD_OT_show_tension(setup.OnObjects, bpy.types.Operator):
         for material in chosen:
             if self.wanted:
                 number = next(item[3] for item in VIEWS if item[0] == self.mode)
-                false_colour.show(material, number, self.range, setup.osl_status(bpy.context)[0])
+                false_colour.show(material, number, self.range, device.uses_osl(bpy.context))
             else:
                 false_colour.hide(material)
         if not self.wanted:

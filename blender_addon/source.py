@@ -270,7 +270,7 @@ def switch(obj, material, kind):
     tension = surface.own(nodes.group_node(tree, GROUPS[kind]), "source", box)
     _place(lobe, tension, uv)
     tree.links.new(uv.outputs["UV"], tension.inputs["UV"])
-    _connect(tree, tension, lobe)
+    _connect(material, tension)
     return told
 
 
@@ -327,7 +327,7 @@ def switch_to_texture(obj, material, files):
             tree.links.new(previous.outputs["Tension"], tension.inputs["Previous"])
         previous = tension
     if previous:
-        _connect(tree, previous, lobe)
+        _connect(material, previous)
     modifier.remove(obj)
     obj.ltmd.source = "TEXTURE"
     return told
@@ -347,11 +347,10 @@ def clear(material):
     _clear(material)
 
 
-def _connect(tree, tension, lobe):
-    shown = [n for n in tree.nodes if n.get(surface.KEY) == "view" and "Tension" in n.inputs]
-    for node in (lobe, *shown):
+def _connect(material, tension):
+    for node in surface.takers(material):
         for name in ("Tension", "Tangent"):
-            tree.links.new(tension.outputs[name], node.inputs[name])
+            material.node_tree.links.new(tension.outputs[name], node.inputs[name])
 
 
 def _place(lobe, tension, uv):

@@ -2,21 +2,26 @@
 """The LTMD part of a material: its own nodes and output for Cycles beside the user's tree.
 
 The user's nodes stay as they are and feed the EEVEE output. Of them only the outputs' target and
-active flag change; both are recorded in Material.ltmd.record and restored by remove().
+active flag change; both are recorded in Material.ltmd.record and restored by remove(). The other
+way, nodes of ours that drive the user's, is in drive.py.
 """
 
 import json
 from math import pi, sqrt
 
 from . import nodes
-from .nodes import conductor, dielectric, glossy
+from .nodes import conductor, dielectric, glossy, glossy_no_osl, parameters_no_osl
 from .nodes.replace import replace
 
 VERSION = 1
+METHOD = "REPLACE"
 KEY = "ltmd"  # custom property of every node that is ours: "surface" or "source"
+TAKEN = "ltmd_taken"  # of a node: [[its input, identifier of the driven node's socket]]
 
 # The groups a set-up material may reflect by, and their socket for the colour of the reflection.
 LOBES = {glossy.NAME: "Color", conductor.NAME: "Base Color", dielectric.NAME: "Coat Tint"}
+
+PARAMETERS = parameters_no_osl.NAME.removesuffix(" (no OSL)")
 
 NOT_CARRIED = (
     "Subsurface Weight",
@@ -32,11 +37,20 @@ def is_set_up(material):
 
 
 def lobe(material):
-    """The node that reflects, of one of LOBES, or None."""
+    """The node that reflects, of one of LOBES, or the one that drives the user's; or None."""
     for node in material.node_tree.nodes if material.node_tree else ():
-        if KEY in node and node.type == "GROUP" and lobe_kind(node) in LOBES:
+        if KEY in node and node.type == "GROUP" and lobe_kind(node) in (*LOBES, PARAMETERS):
             return node
     return None
+
+
+def takers(material):
+    """All nodes of ours that take a tension and its tangent."""
+    return [
+        node
+        for node in our_nodes(material)
+        if "Tension" in node.inputs and "Tangent" in node.inputs
+    ]
 
 
 def lobe_kind(node):
@@ -115,13 +129,12 @@ def frame(material):
     return next(n for n in our_nodes(material, "surface") if n.type == "FRAME")
 
 
-def add(material):
+def add(material, osl=True):
     """Give the material its LTMD surface for Cycles; return sentences for the user."""
+    record = {"method": METHOD}
     if not material.node_tree or not material.use_nodes:
-        record = {"use_nodes": False}
+        record["use_nodes"] = False
         material.use_nodes = True
-    else:
-        record = {}
     tree = material.node_tree
     told = []
 
@@ -149,7 +162,7 @@ def add(material):
 
     output = new("ShaderNodeOutputMaterial", 900, 0)
     output.name = output.label = "LTMD Output"
-    reflection = own(nodes.group_node(tree, glossy), "surface", box)
+    reflection = own(nodes.group_node(tree, glossy if osl else glossy_no_osl), "surface", box)
     reflection.location = (left + 200, bottom - 250)
     diffuse = new("ShaderNodeBsdfDiffuse", 200, 0)
     fresnel = new("ShaderNodeFresnel", 200, 150)
@@ -192,11 +205,15 @@ def add(material):
 
 
 def remove(material):
-    """Take away exactly what add() and the sources made."""
+    """Take away exactly what add(), drive.drive() and the sources made."""
     tree = material.node_tree
+    record = json.loads(material.ltmd.record or "{}")
+    for node in our_nodes(material):
+        _give_back(node)
     for node in our_nodes(material):
         tree.nodes.remove(node)
-    record = json.loads(material.ltmd.record or "{}")
+    if record.get("animated") is False:
+        tree.animation_data_clear()
     kept = [entry for entry in record.get("outputs", ()) if entry[0] in tree.nodes]
     for name, target, _active in kept:
         tree.nodes[name].target = target
@@ -207,6 +224,41 @@ def remove(material):
         material.use_nodes = False
     material.ltmd.record = ""
     material.ltmd.set_up = 0
+
+
+def _give_back(node):
+    """Link to the driven node again what our node has taken from it."""
+    tree = node.id_data
+    driven = [w.to_node for s in node.outputs for w in s.links if KEY not in w.to_node]
+    for mine, theirs in json.loads(node.get(TAKEN, "[]")):
+        socket = next((s for n in driven for s in n.inputs if s.identifier == theirs), None)
+        if socket is not None and node.inputs[mine].is_linked:
+            wire = node.inputs[mine].links[0]
+            tree.links.new(wire.from_socket, socket).is_muted = wire.is_muted
+
+
+def exchange(material, add_other):
+    """Another method for a set-up material, which keeps its tension; return sentences."""
+    tree = material.node_tree
+    old = lobe(material)
+    feeding = {
+        name: old.inputs[name].links[0].from_socket
+        for name in ("Tension", "Tangent")
+        if old is not None and old.inputs[name].is_linked
+    }
+    sources = our_nodes(material, "source")
+    for node in sources:
+        del node[KEY]
+    remove(material)
+    try:
+        told = add_other(material)
+    finally:
+        for node in sources:
+            own(node, "source", frame(material) if is_set_up(material) else None)
+    for name, socket in feeding.items():
+        for node in takers(material):
+            tree.links.new(socket, node.inputs[name])
+    return told
 
 
 def _principled(output):

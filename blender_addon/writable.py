@@ -2,6 +2,7 @@
 """May this data-block be changed so that the change is still there after saving?"""
 
 REFUSAL = "Make a library override first"
+NODES_REFUSAL = "nodes of linked and overridden materials cannot be changed: make it local first"
 
 
 def is_writable(data):

@@ -69,14 +69,15 @@ def _move_animation(tree, name, old, new):
     if data is None:
         return
     path = re.compile(rf'(nodes\["{re.escape(name)}"\]\.inputs\[)(\d+)(\].*)')
-    for curve in list(_curves(data)):
+    for curve in list(curves(data)):
         match = path.fullmatch(curve.data_path)
         if match and int(match[2]) < len(old) and old[int(match[2])] in new:
             place = new.index(old[int(match[2])])
             curve.data_path = f"{match[1]}{place}{match[3]}"
 
 
-def _curves(data):
+def curves(data):
+    """F-curves of the drivers, the action and the NLA strips of animation data."""
     yield from data.drivers
     uses = [(data.action, data.action_slot)]
     uses += [(s.action, s.action_slot) for track in data.nla_tracks for s in track.strips]

@@ -8,8 +8,8 @@ NAME = "LTMD Texture Tension"
 VERSION = 1
 
 
-def build(tree):
-    add_tension_outputs(tree)
+def add_image_inputs(tree):
+    """The pixel of one tile, and the tension of the others."""
     add_input(
         tree,
         "Image",
@@ -34,6 +34,11 @@ def build(tree):
         "Tension of the other tiles, from another LTMD Texture Tension node",
         (1.0, 0.0, 1.0),
     )
+
+
+def build(tree):
+    add_tension_outputs(tree)
+    add_image_inputs(tree)
     start, end = ends(tree, 400)
     script = osl_script.fill(tree.nodes.new("ShaderNodeScript"), "ltmd_tension_texture")
     for socket in start.outputs:

@@ -238,7 +238,7 @@ def steps():
     assert "Texture" in " ".join(sum(drawn.values(), []))
 
     # For the manual: this build of Blender has no OSL, users' builds have.
-    part("setup").osl_status = lambda _context: (
+    part("device").osl_status = lambda _context: (
         True,
         "Renders on the CPU with Open Shading Language",
     )
