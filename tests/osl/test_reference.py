@@ -173,6 +173,38 @@ def test_glass_under_a_map_equals_the_library():
     check(mean, error, np.array(expected), rows, TOLERANCE)
 
 
+def test_metal_by_random_normals():
+    """Mode 2 of LTMD Conductor: Fresnel's law at each facet."""
+    views = polar(ANGLES, np.random.default_rng(0).uniform(0, 360, len(ANGLES)))
+    ior, extinction = np.array((0.2, 0.9, 1.5)), np.array((3.6, 2.4, 1.9))
+    d = ltmd.GTR(0.3, 1.4).transformed(matrix(*MAPS[1]))
+
+    def metal(view, channel):
+        def law(cosine):
+            return ltmd.fresnel_conductor(cosine, ior[channel], extinction[channel])
+
+        return seen(view, lambda o: ltmd.brdf(d, view, o, law))[channel]
+
+    expected = np.array([[metal(view, channel) for channel in range(3)] for view in views])
+    stretch, rotation, shear, tension = MAPS[1]
+    mean, error = tile_means(
+        "conductor",
+        views,
+        256,
+        {"Roughness": np.full(len(views), 0.3)},
+        Mode=2,
+        Tail=1.4,
+        Stretch=stretch,
+        Rotation=rotation,
+        Shear=shear,
+        Tension=tension,
+        IOR=ior.tolist(),
+        Extinction=extinction.tolist(),
+        **{"Conductor Type": 1},
+    )
+    check(mean, error, expected, ANGLES, TOLERANCE)
+
+
 def test_weak_white_furnace(tmp_path):
     """Without shadowing every visible microfacet reflects: the weights add up to 1."""
     angles = (0.1, 20, 45, 65, 80, 87, 89.5)
