@@ -70,8 +70,12 @@ LOBES = [
 ]
 
 
-def test_the_panel_says_what_is_set():
-    found = run(PANEL, arguments={"lobes": LOBES})
+@pytest.fixture(scope="module")
+def found():
+    return run(PANEL, arguments={"lobes": LOBES})
+
+
+def test_the_panel_says_what_is_set(found):
     assert "Not set up" in found["plain"] and "Show Tension" not in found["plain"]
     for word in ("Roughness", "Tail", "Lobes", "Mode", "Preset", "ltmd.show_tension"):
         assert word in found["glossy"], word
@@ -91,9 +95,9 @@ def test_the_panel_says_what_is_set():
     assert "ltmd.update_nodes" not in found["updated"]
 
 
-def test_where_the_roughness_of_cycles_ends():
-    limits = run(PANEL, arguments={"lobes": LOBES})["limits"]
-    for (rough, exact, stretch, shear, strength, response), said in zip(LOBES, limits, strict=True):
+def test_where_the_roughness_of_cycles_ends(found):
+    for lobe, said in zip(LOBES, found["limits"], strict=True):
+        rough, exact, stretch, shear, strength, response = lobe
         sx = 1 + stretch if stretch < 0 else 1 / (1 - stretch)
         m0 = np.array([[1, shear], [0, 1]]) @ np.diag([sx, 1 / sx])
         alpha = rough if exact else rough**2
