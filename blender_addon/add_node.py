@@ -5,7 +5,7 @@ import bpy
 from bpy.props import EnumProperty, StringProperty
 
 from . import device, nodes, versions
-from .writable import REFUSAL, is_local
+from .writable import NODES_REFUSAL, is_local
 
 # None: a separator.
 MENU = (
@@ -57,13 +57,13 @@ class LTMD_OT_add_node(bpy.types.Operator):
     def execute(self, context):
         tree, place = self._target(context)
         if tree is None or not is_local(tree):
-            self.report(
-                {"ERROR"},
-                f"The material is linked: {REFUSAL.lower()}"
+            words = (
+                NODES_REFUSAL.capitalize()
                 if tree
-                else "There is no shader "
-                "editor with a material here: give the name of a material with nodes",
+                else "There is no shader editor with a material here: give the name of a material "
+                "with nodes"
             )
+            self.report({"ERROR"}, words)
             return {"CANCELLED"}
         known = versions.modules()
         name = self.node

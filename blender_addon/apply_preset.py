@@ -5,7 +5,7 @@ import bpy
 from bpy.props import EnumProperty
 
 from . import nodes, presets, setup, source, surface, versions
-from .writable import REFUSAL, is_local
+from .writable import NODES_REFUSAL, is_local
 
 
 def apply(material, preset):
@@ -62,7 +62,7 @@ class LTMD_OT_preset(setup.OnObjects, bpy.types.Operator):
                 f"The active material of {obj.name} is not set up: press Set Up LTMD first"
             )
         if not is_local(material):
-            raise source.SourceError(f"{material.name} is linked from another file: {REFUSAL}")
+            raise source.SourceError(f"{material.name}: {NODES_REFUSAL}")
         return apply(material, presets.PRESETS[self.preset])
 
 

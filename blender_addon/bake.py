@@ -22,7 +22,19 @@ from bpy.props import (
     StringProperty,
 )
 
-from . import evaluate, frames, library, naming, rest_state, simulation, source, surface, usd
+from . import (
+    device,
+    evaluate,
+    false_colour,
+    frames,
+    library,
+    naming,
+    rest_state,
+    simulation,
+    source,
+    surface,
+    usd,
+)
 from .library import LibraryMissing
 from .properties import PASS_ITEMS
 from .writable import REFUSAL, is_writable
@@ -650,6 +662,8 @@ class Bake:
         obj.ltmd.uv_map = target.uv_map
         for material in source.materials(obj):
             self.told += source.switch_to_texture(obj, material, files) or ()
+        for material in source.materials(obj):
+            false_colour.refresh(material, device.uses_osl(bpy.context))
 
     def _fail(self, error):
         status = {Refused: "refused", WriteFailure: "write_failed"}.get(type(error), "failed")

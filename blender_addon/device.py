@@ -88,7 +88,8 @@ def _to_change(material, osl):
     known = versions.modules()
     changes = []
     for node in surface.our_nodes(material):
-        name = node.node_tree.get(nodes.GROUP_KEY, "") if node.type == "GROUP" else ""
+        ours = node.type == "GROUP" and node[surface.KEY] != surface.EEVEE
+        name = node.node_tree.get(nodes.GROUP_KEY, "") if ours else ""
         plain = name.removesuffix(" (no OSL)")
         # Driven nodes keep the stock nodes everywhere.
         if plain != surface.PARAMETERS and plain in known and f"{plain} (no OSL)" in known:

@@ -5,15 +5,27 @@ The material's own surface stays linked, as the unused side of a Mix Shader befo
 the graph itself records what hiding restores.
 """
 
-from . import nodes, source, surface
-from .nodes import attribute_tension, tension_view, tension_view_no_osl
+from . import nodes, source, surface, versions
+from .nodes import tension_view, tension_view_no_osl
 
-PART = "view"  # of surface.KEY
+# Values of surface.KEY.
+PART = "view"
+EEVEE = surface.EEVEE
+_KEPT = ("Mode", "Range", "Density", "Shading")
+
+
+def _nodes(material):
+    return surface.our_nodes(material, PART) + surface.our_nodes(material, EEVEE)
 
 
 def views(material):
     """The nodes with the false colours."""
-    return [node for node in surface.our_nodes(material, PART) if "Tension" in node.inputs]
+    kinds = (tension_view.NAME, tension_view_no_osl.NAME)
+    return [
+        node
+        for node in _nodes(material)
+        if node.type == "GROUP" and node.node_tree and node.node_tree.get(nodes.GROUP_KEY) in kinds
+    ]
 
 
 def is_shown(material):
@@ -40,14 +52,7 @@ def show(material, mode=0, limit=2.0, osl=True):
     Where EEVEE has its own output and the tension can be read there, it shows the colours too.
     """
     tree = material.node_tree
-    measured = next(
-        (
-            node
-            for node in surface.our_nodes(material, "surface")
-            if node.type == "GROUP" and "Tension" in node.inputs and "Tangent" in node.inputs
-        ),
-        None,
-    )
+    measured = next((n for n in surface.takers(material) if n[surface.KEY] == "surface"), None)
     if measured is None:
         raise source.SourceError(f"{material.name} has no LTMD node: press Set Up LTMD again")
     module = tension_view if osl else tension_view_no_osl
@@ -60,35 +65,52 @@ def show(material, mode=0, limit=2.0, osl=True):
         if measured.inputs[name].is_linked
     }
     cycles, eevee = (tree.get_output_node(engine) for engine in ("CYCLES", "EEVEE"))
-    _insert(tree, cycles, module, wires, mode, limit)
-    if eevee not in (None, cycles):
-        readable = _readable(material, wires)
+    _insert(tree, cycles, module, PART, wires, mode, limit)
+    if eevee not in (None, cycles) and "Tension" in wires:
+        readable = _without_osl(material, wires["Tension"].node)
         if readable:
-            _insert(tree, eevee, tension_view_no_osl, {"Tension": readable}, mode, limit)
+            wires = {"Tension": readable.outputs["Tension"]}
+            _insert(tree, eevee, tension_view_no_osl, EEVEE, wires, mode, limit)
     nodes.remove_unused()
 
 
-def _readable(material, wires):
-    """A socket with the tension for engines without OSL, or None."""
-    given = wires["Tension"].node if "Tension" in wires else None
-    if given is None or given.type != "GROUP":
-        return wires.get("Tension")
-    if nodes.without_osl(given.node_tree):
-        return wires["Tension"]
-    if given.node_tree.get(nodes.GROUP_KEY) == attribute_tension.NAME:
-        kept = material.node_tree.nodes.new("ShaderNodeAttribute")
-        kept.attribute_name = attribute_tension.ATTRIBUTE
-        kept.location = (given.location.x, given.location.y + 200)
-        return surface.own(kept, PART, given.parent).outputs["Vector"]
-    # An image holds the tension itself; UDIM tiles would have to be put together.
-    images = [n for n in surface.our_nodes(material, "source") if n.type == "TEX_IMAGE"]
-    return images[0].outputs["Color"] if len(images) == 1 else None
+def refresh(material, osl):
+    """Show the same of a tension that has another source, or on another device."""
+    shown = views(material)
+    if shown:
+        values = {name: shown[0].inputs[name].default_value for name in _KEPT}
+        show(material, osl=osl)
+        for view in views(material):
+            for name, value in values.items():
+                view.inputs[name].default_value = value
+
+
+def _without_osl(material, given):
+    """A node that reads the source's tension without OSL, or None."""
+    name = given.node_tree.get(nodes.GROUP_KEY, "") if given.type == "GROUP" else ""
+    if name.endswith(" (no OSL)"):
+        return given
+    module = versions.modules().get(f"{name} (no OSL)")
+    if module is None:
+        return None
+    tree = material.node_tree
+    twin = surface.own(nodes.group_node(tree, module), EEVEE, given.parent)
+    twin.location = (given.location.x, given.location.y + 200)
+    for socket in given.inputs:
+        if not socket.is_linked:
+            twin.inputs[socket.name].default_value = socket.default_value
+            continue
+        feeding = socket.links[0].from_socket
+        if socket.name == "Previous":  # of a chain of UDIM tiles
+            feeding = _without_osl(material, feeding.node).outputs[feeding.name]
+        tree.links.new(feeding, twin.inputs[socket.name])
+    return twin
 
 
 def hide(material):
     """Show the material's own surface again."""
     tree = material.node_tree
-    for node in surface.our_nodes(material, PART):
+    for node in _nodes(material):
         if node.type == "MIX_SHADER":
             own = node.inputs[1].links[0].from_socket if node.inputs[1].is_linked else None
             for target in [wire.to_socket for wire in node.outputs[0].links]:
@@ -97,13 +119,13 @@ def hide(material):
         tree.nodes.remove(node)
 
 
-def _insert(tree, output, module, wires, mode, limit):
+def _insert(tree, output, module, part, wires, mode, limit):
     before = tree.nodes.active
-    mix = surface.own(tree.nodes.new("ShaderNodeMixShader"), PART, output.parent)
+    mix = surface.own(tree.nodes.new("ShaderNodeMixShader"), part, output.parent)
     mix.inputs[0].default_value = 1.0
     mix.label = "Show Tension"
     mix.location = (output.location.x - 20, output.location.y + 200)
-    view = surface.own(nodes.group_node(tree, module), PART, output.parent)
+    view = surface.own(nodes.group_node(tree, module), part, output.parent)
     view.location = (output.location.x - 260, output.location.y + 200)
     view.inputs["Mode"].default_value = mode
     view.inputs["Range"].default_value = limit

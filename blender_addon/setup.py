@@ -68,6 +68,7 @@ def set_up(obj, kind="PRESENT", osl=True, method=None):
     obj.ltmd.source = kind
     for material in source.materials(obj):
         device.match(material, osl)
+        false_colour.refresh(material, osl)
     return told + refused
 
 

@@ -6,7 +6,7 @@ from bpy.props import EnumProperty, FloatProperty
 
 from . import device, false_colour, nodes, setup, source
 from .properties import VIEWS
-from .writable import REFUSAL, is_local
+from .writable import NODES_REFUSAL, is_local
 
 
 class LTMD_OT_show_tension(setup.OnObjects, bpy.types.Operator):
@@ -46,7 +46,7 @@ class LTMD_OT_show_tension(setup.OnObjects, bpy.types.Operator):
             raise source.SourceError(f"{obj.name} is not set up: press Set Up LTMD first")
         for material in chosen:
             if not is_local(material):
-                raise source.SourceError(f"{material.name} is linked from another file: {REFUSAL}")
+                raise source.SourceError(f"{material.name}: {NODES_REFUSAL}")
         for material in chosen:
             if self.wanted:
                 number = next(item[3] for item in VIEWS if item[0] == self.mode)

@@ -15,7 +15,8 @@ from .nodes.replace import replace
 
 VERSION = 1
 METHOD = "REPLACE"
-KEY = "ltmd"  # custom property of every node that is ours: "surface" or "source"
+KEY = "ltmd"  # custom property of every node that is ours: "surface", "source", "view" or EEVEE
+EEVEE = "eevee"  # what only EEVEE shows: of stock nodes on every device
 TAKEN = "ltmd_taken"  # of a node: [[its input, identifier of the driven node's socket]]
 
 # The groups a set-up material may reflect by, and their socket for the colour of the reflection.
@@ -49,7 +50,7 @@ def takers(material):
     return [
         node
         for node in our_nodes(material)
-        if "Tension" in node.inputs and "Tangent" in node.inputs
+        if node[KEY] != EEVEE and "Tension" in node.inputs and "Tangent" in node.inputs
     ]
 
 

@@ -4,9 +4,8 @@
 Directions need derivatives, which stock nodes do not have: mode 2 shows the magnitude here.
 """
 
-from math import e
-
 from . import ends, tension_view
+from .node_math import Vector, arrange, inputs
 
 NAME = "LTMD Tension View (no OSL)"
 VERSION = 1
@@ -16,66 +15,33 @@ REST, SQUEEZED, STRETCHED = (0.52,) * 3, (0.012, 0.10, 0.68), (0.72, 0.022, 0.02
 
 def build(tree):
     tension_view.add_inputs(tree)
-    start, end = ends(tree, 1400)
-    column = [0]
-
-    def node(kind, *sources, **settings):
-        made = tree.nodes.new(kind)
-        for key, value in settings.items():
-            setattr(made, key, value)
-        made.location = (-1200 + 150 * (column[0] // 4), 300 - 180 * (column[0] % 4))
-        column[0] += 1
-        # A disabled socket belongs to another data type or operation.
-        for socket, source in zip((s for s in made.inputs if s.enabled), sources, strict=False):
-            if isinstance(source, int | float | tuple):
-                socket.default_value = source
-            else:
-                tree.links.new(source, socket)
-        return made
-
-    def maths(operation, *sources, **settings):
-        return node("ShaderNodeMath", *sources, operation=operation, **settings).outputs[0]
-
-    def mixed(factor, a, b):
-        made = node("ShaderNodeMix", factor, a, b, data_type="RGBA")
-        return next(s for s in made.outputs if s.enabled)
-
-    given = start.outputs
-    t11, t12, t22 = node("ShaderNodeSeparateXYZ", given["Tension"]).outputs
+    start, end = ends(tree)
+    given = inputs(tree, start)
 
     # Logarithms of the eigenvalues of T T^t, 1 = full colour.
-    xx = maths("ADD", maths("MULTIPLY", t11, t11), maths("MULTIPLY", t12, t12))
-    yy = maths("MULTIPLY", t22, t22)
-    xy = maths("MULTIPLY", t12, t22)
-    mean = maths("MULTIPLY", maths("ADD", xx, yy), 0.5)
-    half = maths("MULTIPLY", maths("SUBTRACT", xx, yy), 0.5)
-    apart = maths("SQRT", maths("ADD", maths("MULTIPLY", half, half), maths("MULTIPLY", xy, xy)))
-    largest = maths("ADD", mean, apart)
-    area = maths("MULTIPLY", t11, t22)
-    smallest = maths("DIVIDE", maths("MULTIPLY", area, area), largest)
-    full = maths("LOGARITHM", maths("MAXIMUM", given["Range"], 1.001), e)
-    scale = maths("DIVIDE", 0.5, full)
-    high = maths("MULTIPLY", maths("LOGARITHM", largest, e), scale)
-    low = maths("MULTIPLY", maths("LOGARITHM", smallest, e), scale)
+    t11, t12, t22 = given["Tension"].components()
+    xx, xy, yy = t11 * t11 + t12 * t12, t12 * t22, t22 * t22
+    half = (xx - yy) * 0.5
+    largest = (xx + yy) * 0.5 + (half * half + xy * xy).sqrt()
+    area = t11 * t22
+    smallest = area * area / largest
+    scale = 0.5 / given["Range"].at_least(1.001).log()
+    high, low = largest.log() * scale, smallest.log() * scale
 
-    # Mode 1 takes the sum of both.
-    by_area = maths("COMPARE", given["Mode"], 1.0, 0.5)
-    stretched = maths("MAXIMUM", maths("MULTIPLY_ADD", by_area, low, high), 0.0)
-    squeezed = maths(
-        "MAXIMUM", maths("MULTIPLY", maths("MULTIPLY_ADD", by_area, high, low), -1.0), 0.0
-    )
-    amount = maths("MAXIMUM", stretched, squeezed)
-    red, blue = maths("POWER", stretched, 3.0), maths("POWER", squeezed, 3.0)
-    part = maths("DIVIDE", red, maths("MAXIMUM", maths("ADD", red, blue), 1e-9))
-    hue = mixed(part, (*SQUEEZED, 1.0), (*STRETCHED, 1.0))
-    colour = mixed(maths("MINIMUM", amount, 1.0), (*REST, 1.0), hue)
+    by_area = (given["Mode"] > 0.5) * (given["Mode"] < 1.5)
+    stretched = by_area.times_plus(low, high).at_least(0.0)
+    squeezed = (-by_area.times_plus(high, low)).at_least(0.0)
+    amount = stretched.at_least(squeezed)
+    red, blue = stretched**3.0, squeezed**3.0
+    part = red / (red + blue).at_least(1e-9)
+    hue = part.choose(Vector(tree, STRETCHED), Vector(tree, SQUEEZED))
+    colour = amount.at_most(1.0).choose(hue, Vector(tree, REST))
 
-    geometry = node("ShaderNodeNewGeometry").outputs
-    facing = node(
-        "ShaderNodeVectorMath", geometry["Incoming"], geometry["Normal"], operation="DOT_PRODUCT"
-    ).outputs["Value"]
-    slant = maths("SUBTRACT", 1.0, maths("ABSOLUTE", facing))
-    light = maths("SUBTRACT", 1.0, maths("MULTIPLY", given["Shading"], slant))
-    beyond = maths("MAXIMUM", maths("SQRT", amount), 1.0)
-    emission = node("ShaderNodeEmission", colour, maths("DIVIDE", light, beyond))
+    geometry = tree.nodes.new("ShaderNodeNewGeometry").outputs
+    facing = Vector(tree, geometry["Incoming"]).dot(Vector(tree, geometry["Normal"]))
+    light = 1.0 - given["Shading"] * (1.0 - abs(facing))
+    emission = tree.nodes.new("ShaderNodeEmission")
+    colour.feed(emission.inputs["Color"])
+    (light / amount.sqrt().at_least(1.0)).feed(emission.inputs["Strength"])
     tree.links.new(emission.outputs[0], end.inputs["Emission"])
+    arrange(tree)

@@ -6,7 +6,7 @@ from blender_process import run
 
 PRELUDE = """
 from trees import *
-from blender_addon import false_colour, source, surface
+from blender_addon import device, false_colour, source, surface
 
 def stretched(name="Sheet"):
     '''A sheet of side 2, stretched twice along x, above the camera's whole picture.'''
@@ -81,7 +81,8 @@ for kind in ("LIVE", "ATTRIBUTE", "TENSOR"):
     eevee[kind] = [node.type, len(false_colour.views(material))]
     if view:
         eevee[kind] += [view.node_tree["ltmd_group"], view.inputs["Range"].default_value,
-                        view.inputs["Tension"].links[0].from_node.type]
+                        view.inputs["Tension"].links[0].from_node.node_tree["ltmd_group"],
+                        device.mismatch(material, bpy.context)]
         # In Cycles the attribute is there as well.
         bpy.context.view_layer.update()
         end = material.node_tree.nodes["LTMD Output"].inputs["Surface"]
@@ -92,8 +93,13 @@ for kind in ("LIVE", "ATTRIBUTE", "TENSOR"):
         material.node_tree.links.new(kept, end)
     show(object_name=obj.name)
     eevee[kind].append(dump(material) == now)
-report(eevee=eevee, out=out, values=values, loaded=loaded, again=again, shown=shown, plain=plain,
-       back=back, stock=stock, same=same, groups=groups)
+# Shown while the source changes.
+show(object_name=obj.name, mode="DIRECTIONS", range=7)
+bpy.ops.ltmd.setup(object_name=obj.name, source="ATTRIBUTE")
+kept = [[v.inputs[n].default_value for n in ("Mode", "Range")]
+        for v in false_colour.views(material)]
+report(eevee=eevee, kept=kept, out=out, values=values, loaded=loaded, again=again, shown=shown,
+       plain=plain, back=back, stock=stock, same=same, groups=groups)
 """
 )
 
@@ -115,10 +121,12 @@ def test_shown_and_hidden_again(tmp_path):
     assert np.allclose(pixel, found["out"]["MAGNITUDE"], atol=1e-6)
     eevee = found["eevee"]
     assert eevee["LIVE"] == ["BSDF_PRINCIPLED", 1, True]
-    assert eevee["TENSOR"] == ["BSDF_PRINCIPLED", 1, True]
-    *head, pixel, same = eevee["ATTRIBUTE"]
-    assert head == ["MIX_SHADER", 2, "LTMD Tension View (no OSL)", 5.0, "ATTRIBUTE"] and same
-    assert np.allclose(pixel, found["out"]["MAGNITUDE"], atol=1e-5)
+    for kind in ("Attribute", "Tensor"):
+        *head, source, warned, pixel, same = eevee[kind.upper()]
+        assert head == ["MIX_SHADER", 2, "LTMD Tension View (no OSL)", 5.0]
+        assert source == f"LTMD {kind} Tension (no OSL)" and warned is None and same
+        assert np.allclose(pixel, found["out"]["MAGNITUDE"], atol=1e-5)
+    assert found["kept"] == [[2, 7.0], [2, 7.0]]
 
 
 def test_remove_while_shown_shared_materials_and_refusals():
