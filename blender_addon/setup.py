@@ -5,6 +5,7 @@ import bpy
 from bpy.props import BoolProperty, EnumProperty, StringProperty
 
 from . import device, drive, false_colour, modifier, nodes, source, surface
+from .nodes import glossy
 from .properties import SOURCES
 from .writable import NODES_REFUSAL, REFUSAL, is_local, is_writable
 
@@ -40,6 +41,7 @@ def set_up(obj, kind="PRESENT", osl=True, method=None):
     if kind == "PRESENT":
         kind = "LIVE" if obj.ltmd.source == "NONE" else obj.ltmd.source
     textures = kind == "TEXTURE"
+    _compile("LIVE" if textures else kind, osl, method)
     if not any(slot.material for slot in obj.material_slots):
         _new_material(obj)
     told = source.measure(obj, "LIVE" if textures else kind)
@@ -70,6 +72,19 @@ def set_up(obj, kind="PRESENT", osl=True, method=None):
         device.match(material, osl)
         false_colour.refresh(material, osl)
     return told + refused
+
+
+def _compile(kind, osl, method):
+    """Make the groups, while nothing is changed yet. Raises RuntimeError if a shader fails."""
+    needed = [source.GROUPS[kind]] if osl else []
+    if osl and method != drive.METHOD:
+        needed.append(glossy)
+    try:
+        for module in needed:
+            nodes.ensure(module)
+    except RuntimeError:
+        nodes.remove_unused()
+        raise
 
 
 def _follow(material, method, osl):

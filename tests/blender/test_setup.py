@@ -464,3 +464,43 @@ report(nodes=nodes, again=again, live=live, b_still=b_still, images=len(bpy.data
     assert result["images"] == 0 and result["groups"] == 0
     assert result["own"] and result["shared"]
     assert not any("ltmd_rest" in names for names in result["left"])
+
+
+def test_a_shader_that_does_not_compile_is_said_in_words_and_changes_nothing(tmp_path):
+    result = run(
+        PRELUDE
+        + """
+from pathlib import Path
+from blender_addon import osl_script
+folder = Path(ARGUMENTS["folder"])
+shaders = osl_script.folder()
+osl_script.folder = lambda: folder
+obj, bare = cube(), cube("Bare")
+material = new_material("M", obj)
+before, data = dump(material), counts()
+said = []
+for broken in ("ltmd_glossy", "ltmd_tension_live"):
+    for name in ("ltmd_glossy", "ltmd_tension_live"):
+        text = "shader x( { broken" if name == broken else osl_script.inlined(
+            shaders / f"{name}.osl")
+        (folder / f"{name}.osl").write_text(text)
+    for name in ("Cube", "Bare"):
+        try:
+            bpy.ops.ltmd.setup(object_name=name)
+        except RuntimeError as error:
+            said.append(str(error))
+report(said=said, same=dump(material) == before, data=[data, counts()],
+       source=[obj.ltmd.source, bare.ltmd.source, material.ltmd.set_up],
+       slots=len(bare.material_slots),
+       attributes=[list(o.data.attributes.keys()) for o in (obj, bare)])
+""",
+        arguments={"folder": str(tmp_path)},
+    )
+    assert len(result["said"]) == 4
+    for sentence, shader in zip(
+        result["said"], ["ltmd_glossy"] * 2 + ["ltmd_tension_live"] * 2, strict=True
+    ):
+        assert f"The shader {shader} could not be compiled" in sentence
+    assert result["same"] and result["data"][0] == result["data"][1]
+    assert result["source"] == ["NONE", "NONE", 0] and result["slots"] == 0
+    assert not any("ltmd_rest" in names for names in result["attributes"])
