@@ -93,3 +93,15 @@ def test_sum_roulette_and_random_normals():
     )
     # The table of lobes in the shader is interpolated in single precision.
     check(mean, error, expected, rows, 5e-4)
+
+
+def test_lobes_are_near_exact_gtr():
+    """The bounds that docs/reference_mode.md states; plotted by examples/lobe_error.py."""
+    for alpha, tail, count in ((0.1, 1.4, 3), (0.25, 1.4, 3), (0.25, 0.5, 3), (0.16, 3, 5)):
+        exact, mixture = ltmd.GTR(alpha, tail), ltmd.fit_lobes(alpha, tail, count)
+        lobes = [Lobe(k, a, np.eye(2)) for k, a in zip(mixture.kind, mixture.alpha, strict=True)]
+        for view in polar((1, 40, 70, 80, 85), 0):
+            shares = mixture.weight * [1 + lobe.Lambda(view) for lobe in lobes]
+            got = shares / shares.sum() @ [lobe.light(view, 100)[0] for lobe in lobes]
+            want = ltmd.single_scattering_albedo(exact, view, points=256)
+            assert abs(got / want - 1) < 0.03, (alpha, tail, view, got, want)

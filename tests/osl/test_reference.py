@@ -205,6 +205,43 @@ def test_metal_by_random_normals():
     check(mean, error, expected, ANGLES, TOLERANCE)
 
 
+def test_a_coat_of_random_normals_leaves_its_base_the_rest():
+    """Mode 2 of LTMD Dielectric over black shows its albedo, over white all light."""
+    result = run(
+        f"""
+sys.path.insert(0, {str(ROOT / "tests" / "osl")!r})
+from shading import *
+import tiles
+"""
+        + """
+from blender_addon.nodes import dielectric
+tree, output = tiles.scene(ARGUMENTS, 256, {})
+node = group(tree, dielectric)
+base = tree.nodes.new("ShaderNodeEmission")
+for name, value in (("Mode", 2), ("Roughness", 0.6), ("Tail", 1.4), ("Tension", (1.3, .4, .8))):
+    node.inputs[name].default_value = value
+tiles.link_attribute(tree, "x_axis", node.inputs["Tangent"])
+tree.links.new(node.outputs[0], output.inputs["Surface"])
+out = [tiles.measure(len(ARGUMENTS))]
+tree.links.new(base.outputs[0], node.inputs["Base"])
+base.inputs["Color"].default_value = (1, 1, 1, 1)
+out.append(tiles.measure(len(ARGUMENTS)))
+report(out=out)
+""",
+        arguments=polar(ANGLES, 20).tolist(),
+    )
+    (coat, error), (white, white_error) = np.array(result["out"])[..., 0]
+    d = ltmd.GTR(0.36, 1.4).transformed(np.array([[1.3, 0.4], [0, 0.8]]))
+    for view, got, sigma in zip(polar(ANGLES, 20), coat, error, strict=True):
+
+        def glass(o, v=view):
+            return ltmd.brdf(d, v, o, lambda c: ltmd.fresnel_dielectric(c, 1.5))
+
+        assert abs(got - seen(view, glass)[0]) < 4.5 * sigma + TOLERANCE, view
+    # A weight may pass 1 at grazing angles: then the base cannot take the rest back.
+    assert np.all(np.abs(white - 1) < 4.5 * white_error + 0.01), white
+
+
 def test_weak_white_furnace(tmp_path):
     """Without shadowing every visible microfacet reflects: the weights add up to 1."""
     angles = (0.1, 20, 45, 65, 80, 87, 89.5)
