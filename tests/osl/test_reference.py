@@ -95,7 +95,11 @@ def test_tilted_ellipsoids_from_both_sides():
     expected = []
     for (case, _), m, view in zip(rows, maps, views, strict=True):
         masking, alpha, across, tilt = case
-        d = ltmd.EllipsoidNDF.from_angles(alpha, across, *tilt).transformed(matrix(*m))
+        # Heights over the change of area are a wider map.
+        t = m[3]
+        d = ltmd.EllipsoidNDF.from_angles(alpha, across, *tilt).transformed(
+            matrix(*m) * t[0] * t[2]
+        )
         # From below a surface is what its point reflection is from above.
         side = np.sign(view[2])
 
@@ -119,6 +123,7 @@ def test_tilted_ellipsoids_from_both_sides():
         },
         Distribution=4,
         Color=WHITE,
+        **{"Height Response": 1},
     )
     check(mean, error, np.array(expected), rows, TOLERANCE)
 
