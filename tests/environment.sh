@@ -18,6 +18,15 @@ export LTMD_ROOT LTMD_CACHE LTMD_OPENEXR LTMD_TOOLS LTMD_BPY
 export PIP_DISABLE_PIP_VERSION_CHECK=1 PIP_ROOT_USER_ACTION=ignore
 mkdir -p "$LTMD_CACHE"
 
+# The library's objects are compiled once for the tests, for each Python and for all checkouts, if there is ccache.
+ltmd_ccache() {
+    command -v ccache >/dev/null || return 0
+    # One name for the compiler, which Python's builds would call g++: it is part of what objects are found by.
+    export CXX=${CXX:-c++} CMAKE_CXX_COMPILER_LAUNCHER=${CMAKE_CXX_COMPILER_LAUNCHER:-ccache}
+    export CCACHE_DIR=$LTMD_CACHE/ccache CCACHE_BASEDIR=$LTMD_ROOT CCACHE_NOHASHDIR=1 CCACHE_MAXSIZE=1G
+}
+ltmd_ccache
+
 ltmd_say() { printf '== %s\n' "$*" >&2; }
 
 ltmd_fail() {
@@ -88,13 +97,13 @@ ltmd_packages() {
 
 ltmd_system_packages() {
     local wanted python
-    wanted=(g++ cmake ninja-build pkg-config libgtest-dev libcli11-dev libtinyobjloader-dev ca-certificates
+    wanted=(g++ ccache cmake ninja-build pkg-config libgtest-dev libcli11-dev libtinyobjloader-dev ca-certificates
         libsm6 libice6 libxrender1 libxi6 libxfixes3 libxxf86vm1 libxkbcommon0 libgl1 libegl1)
     python=$(ltmd_python 3.11) || wanted+=(python3.11)
     if [ -z "${python:-}" ] || ! ltmd_python_is_complete "$python"; then
         wanted+=(python3.11-venv python3.11-dev)
     fi
-    ltmd_packages "${wanted[@]}"
+    ltmd_packages "${wanted[@]}" && ltmd_ccache
 }
 
 # ltmd_venv NAME PYTHON: $LTMD_CACHE/venv-NAME with exactly the pins of tests/requirements-NAME.txt.
@@ -227,7 +236,8 @@ ltmd_wheel_venvs() {
 
 ltmd_wheel_build() {
     local hash folder wheel venv tag venvs
-    hash=$(ltmd_hash pyproject.toml CMakeLists.txt README.md LICENSE cmake cpp)
+    # Not README.md, whose text a wheel also has: it changes more often than what is tested.
+    hash=$(ltmd_hash pyproject.toml CMakeLists.txt LICENSE cmake cpp)
     folder=$LTMD_CACHE/wheels-$hash
     mapfile -t venvs < <(ltmd_wheel_venvs)
     for venv in "${venvs[@]}"; do
@@ -236,7 +246,8 @@ ltmd_wheel_build() {
         ltmd_say "building the wheel for $tag"
         rm -rf "$folder.partial"
         CMAKE_PREFIX_PATH=$LTMD_OPENEXR ltmd_quiet "$venv/bin/python" -m pip wheel \
-            --no-build-isolation --no-deps -w "$folder.partial" "$LTMD_ROOT" || { rm -rf "$folder.partial" && return 1; }
+            --no-build-isolation --no-deps -w "$folder.partial" -C "build-dir=$LTMD_ROOT/build/$tag" \
+            -C cmake.define.LTMD_WARNINGS_AS_ERRORS=ON "$LTMD_ROOT" || { rm -rf "$folder.partial" && return 1; }
         mkdir -p "$folder"
         mv "$folder.partial"/*.whl "$folder"
         rm -rf "$folder.partial"

@@ -13,40 +13,6 @@ struct Transformed : Distribution {
     Matrix2 matrix;
 };
 
-template <class Real>
-using Direction = ltmd::Direction<Real>;
-
-/// A method of AnyDistribution that takes one array.
-template <template <class> class In, bool direction_out, class Call>
-py::object unary(const Distribution& d, py::handle object, const char* name, const Call& call) {
-    const py::array array = floating(object, name);
-    return by_dtype(array, [&](auto real) -> py::object {
-        using Real = decltype(real);
-        using Out = std::conditional_t<direction_out, Direction<Real>, Real>;
-        const auto size = static_cast<py::ssize_t>(sizeof(In<Real>) / sizeof(Real));
-        return for_each_item<In<Real>, Out>(
-            require<Real>(array, name, {size}, true),
-            [&](auto from, auto to) { call(d.of(real), from, to); });
-    });
-}
-
-/// A method of AnyDistribution that takes a view and another array.
-template <template <class> class Other, bool direction_out, class Call>
-py::object binary(const Distribution& d, py::handle v, py::handle other, const char* name,
-                  const Call& call) {
-    constexpr auto size = static_cast<py::ssize_t>(sizeof(Other<float>) / sizeof(float));
-    const auto [views, others] = broadcast(v, "v", 3, other, name, size);
-    return by_dtype(views, [&, &a = views, &b = others](auto real) -> py::object {
-        using Real = decltype(real);
-        using Out = std::conditional_t<direction_out, Direction<Real>, Real>;
-        const auto given = require<Real>(a, "v", {3}, true);
-        const auto second = require<Real>(b, name, {size}, true);
-        const auto second_items = items<Other<Real>>(second);
-        return for_each_item<Direction<Real>, Out>(
-            given, [&](auto from, auto to) { call(d.of(real), from, second_items, to); });
-    });
-}
-
 }  // namespace
 
 py::array floating(py::handle object, const char* name) {
@@ -125,6 +91,29 @@ std::pair<py::array, py::array> broadcast(py::handle a, const char* name_a, py::
     return {arrays[0], arrays[1]};
 }
 
+py::array result_array(py::handle out, const py::dtype& type, const std::vector<py::ssize_t>& shape,
+                       std::initializer_list<py::array> arguments) {
+    if (out.is_none()) return py::array(type, shape);
+    if (!py::isinstance<py::array>(out) ||
+        !py::reinterpret_borrow<py::array>(out).dtype().equal(type))
+        throw py::type_error("out must be a NumPy array of " + std::string(py::str(type)) +
+                             ", as the arguments are");
+    auto array = py::reinterpret_borrow<py::array>(out);
+    const py::tuple wanted = py::cast(shape);
+    if (!py::tuple(array.attr("shape")).equal(wanted))
+        throw py::value_error("out must have shape " + std::string(py::str(wanted)) + ", not " +
+                              shape_text(array));
+    if (!array.writeable() || !(array.flags() & py::array::c_style))
+        throw py::value_error("out must be writable and C-contiguous; numpy.empty() makes such");
+    const auto* first = static_cast<const std::byte*>(array.data());
+    for (const py::array& argument : arguments) {
+        const auto* other = static_cast<const std::byte*>(argument.data());
+        if (other < first + array.nbytes() && first < other + argument.nbytes())
+            throw py::value_error("out shares memory with an argument; give it memory of its own");
+    }
+    return array;
+}
+
 Matrix2 parse_surface_matrix(py::handle m) {
     const auto values = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(m);
     if (!values) {
@@ -157,89 +146,94 @@ void bind_any_distribution(py::module_& module) {
 
 Directions are unit vectors (x, y, z) in the tangent frame, z the macrosurface normal. Arrays are float32 or float64, results
 have the same type; anything else with numbers counts as float64. Leading axes are kept, and broadcast where there are two
-arrays.)")
+arrays. out: an array of the results' type and shape to write them to, which saves the time to get fresh memory.)")
         .def(
             "P22",
-            [](const Distribution& self, py::handle slopes) {
-                return unary<Slope, false>(self, slopes, "slopes",
-                                           [](auto& d, auto s, auto to) { d.P22(s, to); });
+            [](const Distribution& self, py::handle slopes, py::handle out) {
+                return over_items<Slope, false>(
+                    slopes, "slopes", out,
+                    [&](auto real, auto s, auto to) { self.of(real).P22(s, to); });
             },
-            "slopes"_a,
+            "slopes"_a, py::kw_only(), "out"_a = py::none(),
             R"(The density of slopes (-m_x/m_z, -m_y/m_z): float[..., 2] -> float[...]; integrates to 1.
 
 Source: microsurface-transformations, eq. 4.)")
         .def(
             "D",
-            [](const Distribution& self, py::handle m) {
-                return unary<Direction, false>(self, m, "m",
-                                               [](auto& d, auto s, auto to) { d.D(s, to); });
+            [](const Distribution& self, py::handle m, py::handle out) {
+                return over_items<Direction, false>(
+                    m, "m", out, [&](auto real, auto s, auto to) { self.of(real).D(s, to); });
             },
-            "m"_a,
+            "m"_a, py::kw_only(), "out"_a = py::none(),
             R"(The density of normals, D = P22 / cos^4: float[..., 3] -> float[...], per steradian; 0 for m_z <= 0.
 
 D cos integrates to 1. Source: microsurface-transformations, eq. 3, 4.)")
         .def(
             "Lambda",
-            [](const Distribution& self, py::handle v) {
-                return unary<Direction, false>(self, v, "v",
-                                               [](auto& d, auto s, auto to) { d.Lambda(s, to); });
+            [](const Distribution& self, py::handle v, py::handle out) {
+                return over_items<Direction, false>(
+                    v, "v", out, [&](auto real, auto s, auto to) { self.of(real).Lambda(s, to); });
             },
-            "v"_a,
+            "v"_a, py::kw_only(), "out"_a = py::none(),
             R"(Smith's auxiliary function, 0 or more, for v_z > 0: float[..., 3] -> float[...].
 
 Source: masking-shadowing, eq. 65.)")
         .def(
             "G1",
-            [](const Distribution& self, py::handle v) {
-                return unary<Direction, false>(self, v, "v",
-                                               [](auto& d, auto s, auto to) { d.G1(s, to); });
+            [](const Distribution& self, py::handle v, py::handle out) {
+                return over_items<Direction, false>(
+                    v, "v", out, [&](auto real, auto s, auto to) { self.of(real).G1(s, to); });
             },
-            "v"_a,
+            "v"_a, py::kw_only(), "out"_a = py::none(),
             R"(The masking 1 / (1 + Lambda) of microfacets that face v, in [0, 1]; 0 for v_z <= 0: float[..., 3] -> float[...].)")
         .def(
             "projected_area",
-            [](const Distribution& self, py::handle v) {
-                return unary<Direction, false>(
-                    self, v, "v", [](auto& d, auto s, auto to) { d.projected_area(s, to); });
+            [](const Distribution& self, py::handle v, py::handle out) {
+                return over_items<Direction, false>(v, "v", out, [&](auto real, auto s, auto to) {
+                    self.of(real).projected_area(s, to);
+                });
             },
-            "v"_a,
+            "v"_a, py::kw_only(), "out"_a = py::none(),
             R"(The integral of D(m) max(0, v.m), the area of the microfacets that face v, projected along v: float[..., 3] -> float[...].)")
         .def(
             "sample",
-            [](const Distribution& self, py::handle u) {
-                return unary<Uniform, true>(self, u, "u",
-                                            [](auto& d, auto s, auto to) { d.sample(s, to); });
+            [](const Distribution& self, py::handle u, py::handle out) {
+                return over_items<Uniform, true>(
+                    u, "u", out, [&](auto real, auto s, auto to) { self.of(real).sample(s, to); });
             },
-            "u"_a,
+            "u"_a, py::kw_only(), "out"_a = py::none(),
             R"(Normals with density D cos, from random numbers in [0, 1]: float[..., 2] -> float[..., 3].
 
 Source: microsurface-transformations, eq. 25, 26.)")
         .def(
             "pdf",
-            [](const Distribution& self, py::handle m) {
-                return unary<Direction, false>(self, m, "m",
-                                               [](auto& d, auto s, auto to) { d.pdf(s, to); });
+            [](const Distribution& self, py::handle m, py::handle out) {
+                return over_items<Direction, false>(
+                    m, "m", out, [&](auto real, auto s, auto to) { self.of(real).pdf(s, to); });
             },
-            "m"_a, "The density of sample(), D cos, per steradian: float[..., 3] -> float[...].")
+            "m"_a, py::kw_only(), "out"_a = py::none(),
+            "The density of sample(), D cos, per steradian: float[..., 3] -> float[...].")
         .def(
             "sample_visible",
-            [](const Distribution& self, py::handle v, py::handle u) {
-                return binary<Uniform, true>(self, v, u, "u", [](auto& d, auto a, auto b, auto to) {
-                    d.sample_visible(a, b, to);
-                });
+            [](const Distribution& self, py::handle v, py::handle u, py::handle out) {
+                return over_views<Uniform, true>(v, u, "u", out,
+                                                 [&](auto real, auto a, auto b, auto to) {
+                                                     self.of(real).sample_visible(a, b, to);
+                                                 });
             },
-            "v"_a, "u"_a,
+            "v"_a, "u"_a, py::kw_only(), "out"_a = py::none(),
             R"(Normals as seen from v (v_z > 0), from random numbers in [0, 1]: float[..., 3], float[..., 2] -> float[..., 3].
 
 Source: microsurface-transformations, eq. 27, 28.)")
         .def(
             "pdf_visible",
-            [](const Distribution& self, py::handle v, py::handle m) {
-                return binary<Direction, false>(
-                    self, v, m, "m",
-                    [](auto& d, auto a, auto b, auto to) { d.pdf_visible(a, b, to); });
+            [](const Distribution& self, py::handle v, py::handle m, py::handle out) {
+                return over_views<Direction, false>(v, m, "m", out,
+                                                    [&](auto real, auto a, auto b, auto to) {
+                                                        self.of(real).pdf_visible(a, b, to);
+                                                    });
             },
-            "v"_a, "m"_a,
+            "v"_a, "m"_a, py::kw_only(), "out"_a = py::none(),
             R"(The density of sample_visible(), D max(0, v.m) / projected_area(v), per steradian: float[..., 3], float[..., 3] -> float[...].)")
         .def(
             "transformed",

@@ -94,16 +94,9 @@ Raises ValueError unless S is symmetric and positive definite. Source: ellipsoid
             "The slopes of mean_normal, about which P22 is a GGX distribution.")
         .def(
             "unclamped_G1",
-            [](const Class& c, py::handle v) -> py::object {
-                const py::array array = floating(v, "v");
-                return by_dtype(array, [&](auto real) -> py::object {
-                    using Real = decltype(real);
-                    return for_each_item<Direction<Real>, Real>(
-                        require<Real>(array, "v", {3}, true), [&](auto from, auto to) {
-                            for (std::size_t i = 0; i < from.size(); ++i)
-                                to[i] = c.exact_of(real).unclamped_G1(from[i]);
-                        });
-                });
+            [](const Class& c, py::handle v) {
+                return for_each_direction(v, "v",
+                                          [&](auto& w) { return c.exact_of(w.z).unclamped_G1(w); });
             },
             "v"_a,
             R"(G1 without the min: above 1 where a skewed ellipsoid's visible area is less than v_z: float[..., 3] -> float[...].

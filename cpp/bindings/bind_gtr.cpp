@@ -46,23 +46,25 @@ alpha 0.16, by tens of per cent at alpha 0.01. Source: microsurface-transformati
             "lobes; see fit_lobes for few.")
         .def(
             "sample_mixed",
-            [](const Class& self, py::handle v, py::handle u) {
-                return for_each_view<Uniform>(v, u, "u", [&](const auto& a, const auto& b) {
-                    return self.exact_of(a.x).sample_mixed(a, b);
-                });
+            [](const Class& self, py::handle v, py::handle u, py::handle out) {
+                return over_views<Uniform, true>(v, u, "u", out,
+                                                 [&](auto real, auto a, auto b, auto to) {
+                                                     self.exact_of(real).sample_mixed(a, b, to);
+                                                 });
             },
-            "v"_a, "u"_a,
+            "v"_a, "u"_a, py::kw_only(), "out"_a = py::none(),
             R"(Normals that reflect v uniformly with the probability alpha, else those of sample(): float[..., 3], float[..., 2] -> float[..., 3].
 
 Source: microsurface-transformations, appendix B, which leaves the probability open.)")
         .def(
             "pdf_mixed",
-            [](const Class& self, py::handle v, py::handle m) {
-                return for_each_view<Direction>(v, m, "m", [&](const auto& a, const auto& b) {
-                    return self.exact_of(a.x).pdf_mixed(a, b);
-                });
+            [](const Class& self, py::handle v, py::handle m, py::handle out) {
+                return over_views<Direction, false>(v, m, "m", out,
+                                                    [&](auto real, auto a, auto b, auto to) {
+                                                        self.exact_of(real).pdf_mixed(a, b, to);
+                                                    });
             },
-            "v"_a, "m"_a,
+            "v"_a, "m"_a, py::kw_only(), "out"_a = py::none(),
             "The density of sample_mixed(), of both ways, per steradian: float[..., 3], "
             "float[..., 3] -> float[...].")
         .def("__repr__", [](const Class& self) {

@@ -31,20 +31,6 @@ private:
           exact(std::move(d)) {}
 };
 
-/// call(distribution, v) of each v.
-template <class Call>
-py::object of_views(const NonCentred& d, py::handle v, const Call& call) {
-    const py::array array = floating(v, "v");
-    return by_dtype(array, [&](auto real) -> py::object {
-        using Real = decltype(real);
-        return for_each_item<Direction<Real>, Real>(
-            require<Real>(array, "v", {3}, true), [&](auto from, auto to) {
-                for (std::size_t i = 0; i < from.size(); ++i)
-                    to[i] = call(d.exact_of(real), from[i]);
-            });
-    });
-}
-
 }  // namespace
 
 void bind_non_centred_distribution(py::module_& module) {
@@ -77,7 +63,8 @@ and the weak white furnace gives less than 1. Source: masking-shadowing, section
         .def(
             "mesosurface_area",
             [](const NonCentred& d, py::handle v) {
-                return of_views(d, v, [](auto& e, auto& w) { return e.mesosurface_area(w); });
+                return for_each_direction(
+                    v, "v", [&](auto& w) { return d.exact_of(w.z).mesosurface_area(w); });
             },
             "v"_a,
             R"(The visible projected area (w_m.v)/(w_m.n), w_m the mean normal; 0 if it faces away: float[..., 3] -> float[...].
@@ -86,7 +73,8 @@ Source: masking-shadowing, section 5.5.)")
         .def(
             "mesosurface_G1",
             [](const NonCentred& d, py::handle v) {
-                return of_views(d, v, [](auto& e, auto& w) { return e.mesosurface_G1(w); });
+                return for_each_direction(
+                    v, "v", [&](auto& w) { return d.exact_of(w.z).mesosurface_G1(w); });
             },
             "v"_a,
             R"(The base's masking at the slope of v less the offset, in [0, 1]; 0 if the mean normal or v_z faces away: float[..., 3] -> float[...].

@@ -20,19 +20,10 @@ Source: Estevez and Kulla 2017, "Production Friendly Microfacet Sheen BRDF".)")
         .def(
             "fitted_Lambda",
             [](const Class& self, py::handle v) {
-                const py::array array = floating(v, "v");
-                return by_dtype(array, [&](auto real) -> py::object {
-                    using Real = decltype(real);
-                    using View = Direction<Real>;
-                    return for_each_item<View, Real>(
-                        require<Real>(array, "v", {3}, true),
-                        [&](std::span<const View> from, std::span<Real> to) {
-                            for (std::size_t i = 0; i < from.size(); ++i) {
-                                const double cosine = from[i].z / length(from[i]);
-                                to[i] =
-                                    static_cast<Real>(sheen_lambda_fit(self.exact.alpha(), cosine));
-                            }
-                        });
+                return for_each_direction(v, "v", [&](auto& w) {
+                    const double cosine = w.z / length(w);
+                    return static_cast<std::remove_cvref_t<decltype(w.z)>>(
+                        sheen_lambda_fit(self.exact.alpha(), cosine));
                 });
             },
             "v"_a,

@@ -287,4 +287,7 @@ Slope<double> AshikhminShirleyNormals::sample_visible(const Direction<double>& v
             std::copysign(alpha_y_, v.y) * t * std::sin(xi)};
 }
 
+template AnyDistribution<float>::AnyDistribution(AshikhminShirley<float>);
+template AnyDistribution<double>::AnyDistribution(AshikhminShirley<double>);
+
 }  // namespace ltmd::inline v0

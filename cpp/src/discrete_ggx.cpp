@@ -253,4 +253,7 @@ Direction<double> DiscreteFacets::sample_cap(const View& view, const Direction<d
                                         x * a.z + y * b.z + z * v.z});
 }
 
+template AnyDistribution<float>::AnyDistribution(DiscreteGGX<float>);
+template AnyDistribution<double>::AnyDistribution(DiscreteGGX<double>);
+
 }  // namespace ltmd::inline v0

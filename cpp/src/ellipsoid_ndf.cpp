@@ -153,4 +153,7 @@ Ellipsoid Ellipsoid::sheared(const Slope<double>& offset) const {
     return Ellipsoid(a_ * Matrix{1, 0, 0, 0, 1, 0, -offset.x, -offset.y, 1});
 }
 
+template AnyDistribution<float>::AnyDistribution(EllipsoidNDF<float>);
+template AnyDistribution<double>::AnyDistribution(EllipsoidNDF<double>);
+
 }  // namespace ltmd::inline v0

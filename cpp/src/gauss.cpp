@@ -20,4 +20,7 @@ double gauss_peak(double m) {
     return std::numbers::inv_pi / sum;
 }
 
+template AnyDistribution<float>::AnyDistribution(Gauss<float>);
+template AnyDistribution<double>::AnyDistribution(Gauss<double>);
+
 }  // namespace ltmd::inline v0

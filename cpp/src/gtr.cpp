@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "for_items.h"
 #include "gauss_quadrature.h"
 
 namespace ltmd::inline v0 {
@@ -128,5 +129,31 @@ std::array<double, 5> natural_spline_weights(double gamma) {
     }
     return weights;
 }
+
+template <std::floating_point R>
+void GTR<R>::sample_mixed(std::span<const Direction<R>> v, std::span<const Uniform<R>> u,
+                          std::span<Direction<R>> out) const {
+    for_items(out, [&](auto& a, auto& b) { return sample_mixed(a, b); }, v, u);
+}
+template <std::floating_point R>
+void GTR<R>::pdf_mixed(std::span<const Direction<R>> v, std::span<const Direction<R>> m,
+                       std::span<R> out) const {
+    for_items(out, [&](auto& a, auto& b) { return pdf_mixed(a, b); }, v, m);
+}
+template <std::floating_point R>
+void GTR<R>::sample_bounded(std::span<const Direction<R>> v, std::span<const Uniform<R>> u,
+                            const LobeFrame<R>& frame, std::span<Direction<R>> out) const {
+    for_items(out, [&](auto& a, auto& b) { return sample_bounded(a, b, frame); }, v, u);
+}
+template <std::floating_point R>
+void GTR<R>::pdf_bounded(std::span<const Direction<R>> v, std::span<const Direction<R>> m,
+                         const LobeFrame<R>& frame, std::span<R> out) const {
+    for_items(out, [&](auto& a, auto& b) { return pdf_bounded(a, b, frame); }, v, m);
+}
+
+template class GTR<float>;
+template class GTR<double>;
+template AnyDistribution<float>::AnyDistribution(GTR<float>);
+template AnyDistribution<double>::AnyDistribution(GTR<double>);
 
 }  // namespace ltmd::inline v0

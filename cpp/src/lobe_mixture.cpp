@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <string>
 
+#include "for_items.h"
 #include "gauss_quadrature.h"
 #include "lobe_table.h"
 #include "ltmd/gtr.h"
@@ -179,5 +180,21 @@ FittedLobes fit_lobes(double alpha, double gamma, int max_lobes) {
     fitted.max_relative_error = max_relative_error(alpha, gamma, fitted.lobes);
     return fitted;
 }
+
+template <std::floating_point R>
+void LobeMixture<R>::sample_bounded(std::span<const Direction<R>> v, std::span<const Uniform<R>> u,
+                                    const LobeFrame<R>& frame, std::span<Direction<R>> out) const {
+    for_items(out, [&](auto& a, auto& b) { return sample_bounded(a, b, frame); }, v, u);
+}
+template <std::floating_point R>
+void LobeMixture<R>::pdf_bounded(std::span<const Direction<R>> v, std::span<const Direction<R>> m,
+                                 const LobeFrame<R>& frame, std::span<R> out) const {
+    for_items(out, [&](auto& a, auto& b) { return pdf_bounded(a, b, frame); }, v, m);
+}
+
+template class LobeMixture<float>;
+template class LobeMixture<double>;
+template AnyDistribution<float>::AnyDistribution(LobeMixture<float>);
+template AnyDistribution<double>::AnyDistribution(LobeMixture<double>);
 
 }  // namespace ltmd::inline v0

@@ -14,4 +14,7 @@ double sheen_lambda_fit(double alpha, double cosine) {
     return std::exp(cosine < 0.5 ? L(cosine) : 2 * L(0.5) - L(1 - cosine));
 }
 
+template AnyDistribution<float>::AnyDistribution(Sheen<float>);
+template AnyDistribution<double>::AnyDistribution(Sheen<double>);
+
 }  // namespace ltmd::inline v0

@@ -104,4 +104,7 @@ double std_lambda_rational(double a, double gamma) {
     return scale * (s1 / (2 * g - 3) + std::sqrt(g - 1) * s2) - 0.5;
 }
 
+template AnyDistribution<float>::AnyDistribution(STD<float>);
+template AnyDistribution<double>::AnyDistribution(STD<double>);
+
 }  // namespace ltmd::inline v0

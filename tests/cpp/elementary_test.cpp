@@ -42,6 +42,23 @@ TEST(Elementary, IsAsAccurateInFloatAsStated) {
                   positive, [](float x) { return elementary::log1p(x); },
                   [](double x) { return std::log1p(x); }),
               3);
+    for (const bool near : {false, true})
+        EXPECT_LT(greatest_error(
+                      [&](float u) { return near ? std::exp(-14 * u) - 1 : -std::exp(-40 * u); },
+                      [](float x) { return elementary::log1p(x); },
+                      [](double x) { return std::log1p(x); }),
+                  3);
+    for (const float y : {0.0F, 0.3F, 1.4F, -2.0F, 3.999F, -4.0F, 4.7F})
+        for (const bool near : {false, true}) {
+            const float most = 86 / std::max(1.0F, std::abs(y));
+            EXPECT_LT(
+                greatest_error(
+                    [&](float u) { return near ? around_1(u) : std::exp(most * (2 * u - 1)); },
+                    [&](float x) { return elementary::pow(x, y); },
+                    [&](double x) { return std::pow(x, static_cast<double>(y)); }),
+                1 + 2 * std::abs(y))
+                << y;
+        }
     EXPECT_LT(greatest_error([](float u) { return std::exp(44 * u - 40); },
                              [](float x) { return elementary::expm1(x); },
                              [](double x) { return std::expm1(x); }),
@@ -66,7 +83,12 @@ TEST(Elementary, StaysFiniteAtTheEnds) {
     EXPECT_EQ(elementary::exp(-88.0F), 0);
     EXPECT_EQ(elementary::exp(0.0F), 1);
     EXPECT_EQ(elementary::log(1.0F), 0);
+    EXPECT_EQ(elementary::pow(1.0F, 4.0F), 1);
+    EXPECT_EQ(elementary::pow(7.0F, 0.0F), 1);
+    EXPECT_EQ(elementary::pow(1e30F, -4.0F), 0);
+    EXPECT_EQ(elementary::pow(1e30F, 4.0F), infinity);
     EXPECT_NEAR(elementary::log(0.0F), -87.3365, 1e-4);
+    EXPECT_NEAR(elementary::log1p(-1.0F), -87.3365, 1e-4);
     EXPECT_NEAR(elementary::log1p(infinity), 88.7228, 1e-4);
 }
 

@@ -10,6 +10,7 @@
 #include "ltmd/any_distribution.h"
 #include "ltmd/beckmann.h"
 #include "ltmd/ggx.h"
+#include "ltmd/gtr.h"
 #include "ltmd/phong.h"
 #include "ltmd/threads.h"
 
@@ -90,6 +91,8 @@ INSTANTIATE_TEST_SUITE_P(
         ltmd::AnyDistribution<float>(ltmd::GGX<float>(0.3, 0.1)),
         ltmd::AnyDistribution<float>(ltmd::Beckmann<float>(0.3, 0.1)),
         ltmd::AnyDistribution<float>(ltmd::Phong<float>(20)),
+        ltmd::AnyDistribution<float>(ltmd::GTR<float>(0.1, 1.4)),
+        ltmd::AnyDistribution<float>(ltmd::GTR<float>(0.1, 3.3)).transformed({1, 0.4, 0, 1}),
         ltmd::AnyDistribution<float>(ltmd::GGX<float>(0.3)).transformed({1, 2, 0, 1}),
         ltmd::AnyDistribution<float>(ltmd::Beckmann<float>(2)).transformed({-1, 0.3, 0, 1.2})));
 

@@ -21,8 +21,7 @@ public:
     template <MicrofacetDistribution Distribution>
         requires std::same_as<typename Distribution::Real, R> &&
                  (!std::same_as<Distribution, AnyDistribution>)
-    explicit AnyDistribution(Distribution distribution)
-        : model_(std::make_shared<Model<Distribution>>(std::move(distribution))) {}
+    explicit AnyDistribution(Distribution distribution);
 
     Real P22(const Slope<Real>& slope) const { return one<Real>(&Interface::P22, slope); }
     Real D(const Direction<Real>& m) const { return one<Real>(&Interface::D, m); }
@@ -79,53 +78,63 @@ private:
     struct Model final : Interface {
         explicit Model(Distribution d) : distribution(std::move(d)) {}
         void P22(const Slope<Real>* slope, Real* out, std::size_t n) const override {
-            each([](const Distribution& d, const auto&... item) { return d.P22(item...); }, n, out,
-                 slope);
+            each<normals_vectorize<Distribution>>(
+                [](const Distribution& d, const auto&... item) { return d.P22(item...); }, n, out,
+                slope);
         }
         void D(const Direction<Real>* m, Real* out, std::size_t n) const override {
-            each([](const Distribution& d, const auto&... item) { return d.D(item...); }, n, out,
-                 m);
+            each<normals_vectorize<Distribution>>(
+                [](const Distribution& d, const auto&... item) { return d.D(item...); }, n, out, m);
         }
         void Lambda(const Direction<Real>* v, Real* out, std::size_t n) const override {
-            each([](const Distribution& d, const auto&... item) { return d.Lambda(item...); }, n,
-                 out, v);
+            each<views_vectorize<Distribution>>(
+                [](const Distribution& d, const auto&... item) { return d.Lambda(item...); }, n,
+                out, v);
         }
         void G1(const Direction<Real>* v, Real* out, std::size_t n) const override {
-            each([](const Distribution& d, const auto&... item) { return d.G1(item...); }, n, out,
-                 v);
+            each<views_vectorize<Distribution>>(
+                [](const Distribution& d, const auto&... item) { return d.G1(item...); }, n, out,
+                v);
         }
         void projected_area(const Direction<Real>* v, Real* out, std::size_t n) const override {
-            each([](const Distribution& d,
-                    const auto&... item) { return d.projected_area(item...); },
-                 n, out, v);
+            each<views_vectorize<Distribution>>(
+                [](const Distribution& d, const auto&... item) {
+                    return d.projected_area(item...);
+                },
+                n, out, v);
         }
         void sample(const Uniform<Real>* u, Direction<Real>* out, std::size_t n) const override {
-            each([](const Distribution& d, const auto&... item) { return d.sample(item...); }, n,
-                 out, u);
+            each<normals_vectorize<Distribution>>(
+                [](const Distribution& d, const auto&... item) { return d.sample(item...); }, n,
+                out, u);
         }
         void pdf(const Direction<Real>* m, Real* out, std::size_t n) const override {
-            each([](const Distribution& d, const auto&... item) { return d.pdf(item...); }, n, out,
-                 m);
+            each<normals_vectorize<Distribution>>(
+                [](const Distribution& d, const auto&... item) { return d.pdf(item...); }, n, out,
+                m);
         }
         void sample_visible(const Direction<Real>* v, const Uniform<Real>* u, Direction<Real>* out,
                             std::size_t n) const override {
-            each([](const Distribution& d,
-                    const auto&... item) { return d.sample_visible(item...); },
-                 n, out, v, u);
+            each<views_vectorize<Distribution>>(
+                [](const Distribution& d, const auto&... item) {
+                    return d.sample_visible(item...);
+                },
+                n, out, v, u);
         }
         void pdf_visible(const Direction<Real>* v, const Direction<Real>* m, Real* out,
                          std::size_t n) const override {
-            each([](const Distribution& d, const auto&... item) { return d.pdf_visible(item...); },
-                 n, out, v, m);
+            each<views_vectorize<Distribution>>(
+                [](const Distribution& d, const auto&... item) { return d.pdf_visible(item...); },
+                n, out, v, m);
         }
         AnyDistribution transformed(const Matrix2& m) const override {
             using ltmd::transformed;  // beside a distribution's own
             return AnyDistribution(transformed(distribution, m));
         }
         /// out[i] = function(distribution, in[i]...).
-        template <class Function, class Out, class... In>
+        template <bool in_vectors, class Function, class Out, class... In>
         void each(const Function& function, std::size_t n, Out* out, const In*... in) const {
-            if constexpr (requires { requires Distribution::vectorizes; }) {
+            if constexpr (in_vectors) {
                 wide_loop([function,
                            d = distribution](const In&... item) { return function(d, item...); },
                           n, out, in...);
@@ -146,6 +155,15 @@ private:
 
     std::shared_ptr<const Interface> model_;
 };
+
+// Not in the class, where it would be inline: the library has it compiled for its own
+// distributions.
+template <std::floating_point R>
+template <MicrofacetDistribution Distribution>
+    requires std::same_as<typename Distribution::Real, R> &&
+             (!std::same_as<Distribution, AnyDistribution<R>>)
+AnyDistribution<R>::AnyDistribution(Distribution distribution)
+    : model_(std::make_shared<Model<Distribution>>(std::move(distribution))) {}
 
 extern template class AnyDistribution<float>;
 extern template class AnyDistribution<double>;

@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "ltmd/any_distribution.h"
 #include "ltmd/export.h"
 #include "ltmd/require_range.h"
 #include "ltmd/slope_distribution.h"
@@ -107,5 +108,8 @@ private:
     Real nx_, ny_, peak_;
     std::shared_ptr<const AshikhminShirleyNormals> normals_;
 };
+
+extern template LTMD_API AnyDistribution<float>::AnyDistribution(AshikhminShirley<float>);
+extern template LTMD_API AnyDistribution<double>::AnyDistribution(AshikhminShirley<double>);
 
 }  // namespace ltmd::inline v0

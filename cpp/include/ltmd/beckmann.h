@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "ltmd/any_distribution.h"
 #include "ltmd/error_function.h"
 #include "ltmd/require_range.h"
 #include "ltmd/slope_distribution.h"
@@ -22,25 +23,40 @@ public:
         : alpha_x_(
               static_cast<Real>(require_range("alpha_x", alpha_x, smallest_alpha, largest_alpha))),
           alpha_y_(
-              static_cast<Real>(require_range("alpha_y", alpha_y, smallest_alpha, largest_alpha))) {
-    }
+              static_cast<Real>(require_range("alpha_y", alpha_y, smallest_alpha, largest_alpha))),
+          inverse_x_(static_cast<Real>(1 / alpha_x)),
+          inverse_y_(static_cast<Real>(1 / alpha_y)),
+          peak_(std::numbers::inv_pi_v<Real> / (alpha_x_ * alpha_y_)) {}
     explicit Beckmann(double alpha) : Beckmann(alpha, alpha) {}
 
     Real alpha_x() const { return alpha_x_; }
     Real alpha_y() const { return alpha_y_; }
 
     Real P22(const Slope<Real>& slope) const {
-        const Real x = slope.x / alpha_x_, y = slope.y / alpha_y_;
-        return std::numbers::inv_pi_v<Real> / (alpha_x_ * alpha_y_) *
-               elementary::exp(-(x * x + y * y));
+        const Real x = slope.x * inverse_x_, y = slope.y * inverse_y_;
+        return peak_ * elementary::exp(-(x * x + y * y));
     }
 
-    Real D_any_length(const Direction<Real>& m) const { return this->D(m); }
+    Real D(const Direction<Real>& m) const {
+        const Real x = m.x * inverse_x_, y = m.y * inverse_y_;
+        // Nearer to the horizon, exp() is 0.
+        constexpr auto least = static_cast<Real>(is_float ? 1e-18 : 1e-153);
+        const Real inverse = 1 / elementary::max(m.z * m.z, least);
+        const Real value = peak_ * elementary::exp(-(x * x + y * y) * inverse) * inverse * inverse;
+        return m.z > 0 ? value : Real{0};
+    }
+
+    Real D_any_length(const Direction<Real>& m) const { return D(m); }
 
     /// Exact, as accurate relative to itself where it is exponentially small:
     /// (e^(-a^2) / (a sqrt(pi)) - erfc(a)) / 2 with a the cotangent of v's angle in units of alpha,
     /// written as an integral of erfc (masking-shadowing, eq. 69, 83).
     Real Lambda(const Direction<Real>& v) const { return hidden_area(v) / v.z; }
+
+    Real G1(const Direction<Real>& v) const {
+        const Real value = v.z / projected_area(v);
+        return v.z > 0 ? value : Real{0};
+    }
 
     Real projected_area(const Direction<Real>& v) const { return v.z + hidden_area(v); }
 
@@ -101,7 +117,7 @@ private:
         return Gaussian{}.hidden(v.z, std::sqrt(x * x + y * y)) / 2;
     }
 
-    Real alpha_x_, alpha_y_;
+    Real alpha_x_, alpha_y_, inverse_x_, inverse_y_, peak_;
 };
 
 /// A rational fit of the Beckmann distribution's Lambda for a = 1 / (alpha tan(theta)), 0 from 1.6
@@ -113,5 +129,8 @@ Real beckmann_lambda_rational(Real a) {
                ? numerator / (static_cast<Real>(3.535) * a + static_cast<Real>(2.181) * a * a)
                : Real{0};
 }
+
+extern template LTMD_API AnyDistribution<float>::AnyDistribution(Beckmann<float>);
+extern template LTMD_API AnyDistribution<double>::AnyDistribution(Beckmann<double>);
 
 }  // namespace ltmd::inline v0

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
-#include <span>
-
 #include "ltmd/lobe_normals.h"
 #include "ltmd/matrix2.h"
 
@@ -51,33 +48,30 @@ class BoundedNormals {
 public:
     static constexpr std::size_t capacity = 64;
 
-    /// Of at most 64 lobes, slope scales and weights, that outlive this object.
-    BoundedNormals(std::span<const Real> alpha, std::span<const Real> weight,
+    /// Of `count` lobes, slope scales and weights, that outlive this object: at most 64, divisible
+    /// by 4.
+    BoundedNormals(const Real* alpha, const Real* weight, std::size_t count,
                    const Direction<Real>& v, const LobeFrame<Real>& frame = {})
-        : alpha_(alpha), weight_(weight), frame_(frame), v_(frame.into(v)) {
-        const Real s = 1 + std::sqrt(v.x * v.x + v.y * v.y), s2 = s * s;
-        const Real across = square(frame.x * v_.x) + square(frame.y * v_.y);
-        const Real least = std::min(frame.x, frame.y);
-        for (std::size_t i = 0; i < alpha.size(); ++i) {
-            const Real a = std::min(Real{1}, alpha[i] * least), a2 = a * a;
-            const Real k = (1 - a2) * s2 / (s2 + a2 * v.z * v.z);
-            part_[i] = weight[i] * (k * v.z + std::sqrt(alpha[i] * alpha[i] * across + v.z * v.z));
-        }
-        for (std::size_t i = 0; i < alpha.size(); ++i) total_ += part_[i];
-    }
+        : alpha_(alpha),
+          weight_(weight),
+          count_(count),
+          frame_(frame),
+          v_(frame.into(v)),
+          reach2_(square(1 + std::sqrt(v.x * v.x + v.y * v.y))),
+          least2_(square(std::min(frame.x, frame.y))),
+          share_(count, [&, across = square(frame.x * v_.x) + square(frame.y * v_.y),
+                         z = v.z](std::size_t i) {
+              const Real a2 = alpha[i] * alpha[i];
+              return weight[i] * (cap(a2) * z + std::sqrt(a2 * across + z * z));
+          }) {}
 
     /// K.
-    Real total() const { return total_; }
+    Real total() const { return share_.total(); }
 
     Direction<Real> sample(const Uniform<Real>& u) const {
-        Real rest = u.x * total_;
-        std::size_t i = 0;
-        while (i + 1 < alpha_.size() && rest >= part_[i]) rest -= part_[i++];
-        while (i > 0 && !(part_[i] > 0)) rest = part_[--i];
-        const Real share = std::min(rest / part_[i], Real{1});
-        const Direction<Real> stretched = frame_.stretched(alpha_[i], v_);
-        const Direction<Real> w = normalized(stretched);
-        const Direction<Real> c = sample_cap(lowest(i, w.z), {share, u.y});
+        const auto [i, place] = share_.pick(u.x);
+        const Direction<Real> w = normalized(frame_.stretched(alpha_[i], v_));
+        const Direction<Real> c = sample_cap(lowest(i, w.z), {place, u.y});
         const Direction<Real> h{c.x + w.x, c.y + w.y, std::max(Real{0}, c.z + w.z)};
         return normalized(frame_.out_of(frame_.stretched(alpha_[i], h)));
     }
@@ -87,35 +81,37 @@ public:
         const Direction<Real> n = frame_.into(m);
         const Real facing = dot(v_, n);
         if (!(facing > 0 && m.z > 0)) return 0;
-        if (2 * facing * m.z > v_.z) return 2 * facing * D / total_;
+        if (2 * facing * m.z > v_.z) return 2 * facing * D / total();
         // Below the horizon each cap ends elsewhere.
         Real sum = 0;
-        for (std::size_t i = 0; i < alpha_.size(); ++i) {
+        for (std::size_t i = 0; i < count_; ++i) {
             const Real x = n.x / (alpha_[i] * frame_.x), y = n.y / (alpha_[i] * frame_.y);
             const Real length2 = x * x + y * y + n.z * n.z;
             const Direction<Real> w = normalized(frame_.stretched(alpha_[i], v_));
             // The point of the cap: w reflected at (x, y, n_z) / length.
             const Real z = 2 * (w.x * x + w.y * y + w.z * n.z) * n.z / length2 - w.z;
-            if (z < lowest(i, w.z)) continue;
+            if (z < lowest(i, w.z) || weight_[i] == 0) continue;
             sum += weight_[i] / (alpha_[i] * alpha_[i] * length2 * length2);
         }
-        return 2 * facing * sum * std::numbers::inv_pi_v<Real> / (frame_.x * frame_.y * total_);
+        return 2 * facing * sum * std::numbers::inv_pi_v<Real> / (frame_.x * frame_.y * total());
     }
 
 private:
     static Real square(Real x) { return x * x; }
-    /// The lowest z of lobe i's cap.
-    Real lowest(std::size_t i, Real w_z) const {
-        const Real s = 1 + std::sqrt(v_.x * v_.x + v_.y * v_.y), s2 = s * s;
-        const Real a = std::min(Real{1}, alpha_[i] * std::min(frame_.x, frame_.y)), a2 = a * a;
-        return -(1 - a2) * s2 / (s2 + a2 * v_.z * v_.z) * w_z;
+    /// k of a lobe of alpha^2.
+    Real cap(Real alpha2) const {
+        const Real a2 = elementary::min(Real{1}, alpha2 * least2_);
+        return (1 - a2) * reach2_ / (reach2_ + a2 * v_.z * v_.z);
     }
+    /// The lowest z of lobe i's cap.
+    Real lowest(std::size_t i, Real w_z) const { return -cap(alpha_[i] * alpha_[i]) * w_z; }
 
-    std::span<const Real> alpha_, weight_;
+    const Real *alpha_, *weight_;
+    std::size_t count_;
     LobeFrame<Real> frame_;
     Direction<Real> v_;
-    std::array<Real, capacity> part_{};
-    Real total_ = 0;
+    Real reach2_, least2_;
+    LobeShares<Real, capacity> share_;
 };
 
 }  // namespace ltmd::inline v0

@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "ltmd/any_distribution.h"
 #include "ltmd/export.h"
 #include "ltmd/require_range.h"
 #include "ltmd/slope_distribution.h"
@@ -129,5 +130,8 @@ private:
 
     std::shared_ptr<const DiscreteFacets> facets_;
 };
+
+extern template LTMD_API AnyDistribution<float>::AnyDistribution(DiscreteGGX<float>);
+extern template LTMD_API AnyDistribution<double>::AnyDistribution(DiscreteGGX<double>);
 
 }  // namespace ltmd::inline v0

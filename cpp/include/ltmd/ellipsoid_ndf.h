@@ -3,6 +3,7 @@
 
 #include <array>
 
+#include "ltmd/any_distribution.h"
 #include "ltmd/export.h"
 #include "ltmd/transformed_distribution.h"
 
@@ -211,5 +212,8 @@ template <std::floating_point Real>
 EllipsoidNDF<Real> transformed(const EllipsoidNDF<Real>& base, const Matrix2& m) {
     return EllipsoidNDF<Real>(base.ellipsoid().transformed(m));
 }
+
+extern template LTMD_API AnyDistribution<float>::AnyDistribution(EllipsoidNDF<float>);
+extern template LTMD_API AnyDistribution<double>::AnyDistribution(EllipsoidNDF<double>);
 
 }  // namespace ltmd::inline v0

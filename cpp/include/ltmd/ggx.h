@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "ltmd/any_distribution.h"
 #include "ltmd/elementary.h"
+#include "ltmd/lobe_normals.h"
 #include "ltmd/require_range.h"
 #include "ltmd/slope_distribution.h"
 
@@ -21,8 +23,10 @@ public:
         : alpha_x_(
               static_cast<Real>(require_range("alpha_x", alpha_x, smallest_alpha, largest_alpha))),
           alpha_y_(
-              static_cast<Real>(require_range("alpha_y", alpha_y, smallest_alpha, largest_alpha))) {
-    }
+              static_cast<Real>(require_range("alpha_y", alpha_y, smallest_alpha, largest_alpha))),
+          inverse_x_(static_cast<Real>(1 / alpha_x)),
+          inverse_y_(static_cast<Real>(1 / alpha_y)),
+          area_(std::numbers::pi_v<Real> * alpha_x_ * alpha_y_) {}
     explicit GGX(double alpha) : GGX(alpha, alpha) {}
 
     Real alpha_x() const { return alpha_x_; }
@@ -32,9 +36,9 @@ public:
 
     /// Also takes a vector of any length, at which P22 is D.
     Real D(const Direction<Real>& m) const {
-        const Real x = m.x / alpha_x_, y = m.y / alpha_y_;
+        const Real x = m.x * inverse_x_, y = m.y * inverse_y_;
         const Real sum = x * x + y * y + m.z * m.z;
-        const Real value = std::numbers::inv_pi_v<Real> / (alpha_x_ * alpha_y_ * sum * sum);
+        const Real value = 1 / (area_ * sum * sum);
         return m.z > 0 ? value : Real{0};
     }
 
@@ -45,6 +49,11 @@ public:
         const Real q = x * x + y * y;
         // (sqrt(1 + q) - 1) / 2 without its cancellation.
         return q / (2 * (1 + std::sqrt(1 + q)));
+    }
+
+    Real G1(const Direction<Real>& v) const {
+        const Real value = elementary::min(Real{1}, v.z / projected_area(v));
+        return v.z > 0 ? value : Real{0};
     }
 
     Real projected_area(const Direction<Real>& v) const {
@@ -58,17 +67,11 @@ public:
         return {alpha_x_ * radius * cosine, alpha_y_ * radius * sine, std::sqrt(1 - u.x)};
     }
 
-    /// Spherical caps: the visible half of a sphere's normals is a cap of reflected directions.
     Direction<Real> sample_visible_any_length(const Direction<Real>& v,
                                               const Uniform<Real>& u) const {
         const Direction<Real> w = normalized(Direction<Real>{alpha_x_ * v.x, alpha_y_ * v.y, v.z});
-        const auto [cosine, sine] = elementary::turn(u.x);
-        // At 1 the normal may vanish.
-        const Real height = std::min(u.y, 1 - std::numeric_limits<Real>::epsilon());
-        const Real z = (1 - height) * (1 + w.z) - w.z;
-        const Real radius = std::sqrt(std::max(Real{0}, (1 - z) * (1 + z)));
-        return {alpha_x_ * (radius * cosine + w.x), alpha_y_ * (radius * sine + w.y),
-                std::max(Real{0}, z + w.z)};
+        const Direction<Real> m = sample_visible_ggx(w, u);
+        return {alpha_x_ * m.x, alpha_y_ * m.y, m.z};
     }
 
     Direction<Real> sample(const Uniform<Real>& u) const {
@@ -79,7 +82,10 @@ public:
     }
 
 private:
-    Real alpha_x_, alpha_y_;
+    Real alpha_x_, alpha_y_, inverse_x_, inverse_y_, area_;
 };
+
+extern template LTMD_API AnyDistribution<float>::AnyDistribution(GGX<float>);
+extern template LTMD_API AnyDistribution<double>::AnyDistribution(GGX<double>);
 
 }  // namespace ltmd::inline v0

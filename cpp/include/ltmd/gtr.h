@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <string>
 
+#include "ltmd/any_distribution.h"
 #include "ltmd/bounded_normals.h"
 #include "ltmd/errors.h"
 #include "ltmd/export.h"
@@ -62,6 +63,7 @@ template <std::floating_point R>
 class GTR : public SlopeDistribution<GTR<R>, R> {
 public:
     using Real = R;
+    static constexpr bool normals_vectorize = true;
 
     /// Throws InvalidInput unless alpha is in [1e-4, 1] and gamma in [0, 4].
     GTR(double alpha, double gamma, GTRMasking masking = GTRMasking::exact)
@@ -83,6 +85,7 @@ public:
         log_range_ = static_cast<Real>(-log_alpha2);
         sample_scale_ = static_cast<Real>(std::expm1(-y));
         sample_power_ = static_cast<Real>(gamma - 1);
+        sample_ratio_ = sine2_ > 0 ? alpha2_ / sine2_ : Real{0};
 
         const GTRLobes lobes =
             gtr_lobes(alpha, gamma, gtr_node_count(alpha, gamma, sizeof(Real) < sizeof(double)));
@@ -106,21 +109,22 @@ public:
 
     Real P22(const Slope<Real>& slope) const {
         // Beyond, P22 is below the smallest float.
-        const Real t = std::min(slope.x * slope.x + slope.y * slope.y, static_cast<Real>(1e29));
+        const Real t =
+            elementary::min(slope.x * slope.x + slope.y * slope.y, static_cast<Real>(1e29));
         const Real ratio = (1 + t) / (1 + t * inverse_alpha2_);
-        return peak_ * std::pow(ratio, power_) / ((1 + t) * (1 + t));
+        return peak_ * elementary::pow(ratio, power_) / ((1 + t) * (1 + t));
     }
 
     Real D(const Direction<Real>& m) const {
-        if (!(m.z > 0)) return 0;
         const Real sum = m.z * m.z + (m.x * m.x + m.y * m.y) * inverse_alpha2_;
-        return peak_ * std::pow(sum, -power_);
+        const Real value = peak_ * elementary::pow(sum, -power_);
+        return m.z > 0 ? value : Real{0};
     }
 
     Real D_any_length(const Direction<Real>& m) const {
         const Real length2 = dot(m, m);
         const Real sum = m.z * m.z + (m.x * m.x + m.y * m.y) * inverse_alpha2_;
-        const Real value = peak_ * std::pow(sum / length2, -power_) / (length2 * length2);
+        const Real value = peak_ * elementary::pow(sum / length2, -power_) / (length2 * length2);
         return m.z > 0 ? value : Real{0};
     }
 
@@ -162,38 +166,33 @@ public:
     /// Exact: of a lobe, picked by its projected area.
     Direction<Real> sample_visible(const Direction<Real>& v, const Uniform<Real>& u) const {
         const Real across2 = v.x * v.x + v.y * v.y;
-        std::array<Real, GTRLobes::capacity> area{};
-        Real total = 0;
-        for_powers([&](auto powers) {
-            for (std::size_t i = 0; i < count_; ++i)
-                area[i] = lobe_area<powers.value>(v.z, across2, B_[i], weight_[0][i], weight_[1][i],
-                                                  weight_[2][i]);
+        return for_powers([&](auto powers) {
+            const Shares area(count_, [&](std::size_t i) {
+                return lobe_area<powers.value>(v.z, across2, B_[i], weight_[0][i], weight_[1][i],
+                                               weight_[2][i]);
+            });
+            const auto [i, place] = area.pick(u.x);
+            const Real beta = lobe_alpha_[i];
+            const Direction<Real> w = normalized(Direction<Real>{beta * v.x, beta * v.y, v.z});
+            Direction<Real> h;
+            if constexpr (powers.value == 2) {
+                h = sample_visible_ggx(w, {place, u.y});
+            } else {
+                const Real rest = place * area[i];
+                const Real ggx = lobe_area<2>(v.z, across2, B_[i], weight_[0][i], 0, 0);
+                const Real student = lobe_area<4>(v.z, across2, B_[i], 0, weight_[1][i], 0);
+                if (rest < ggx) {
+                    h = sample_visible_ggx(w, {rest / ggx, u.y});
+                } else {
+                    const bool third = rest - ggx < student || greatest_power_ == 3;
+                    const Real part = third ? student : area[i] - ggx - student;
+                    const Real left = rest - ggx - (third ? Real{0} : student);
+                    h = sample_visible_student(third ? 1 : 2, w,
+                                               {u.y, std::clamp(left / part, Real{0}, Real{1})});
+                }
+            }
+            return normalized(Direction<Real>{beta * h.x, beta * h.y, h.z});
         });
-        for (std::size_t i = 0; i < count_; ++i) total += area[i];
-        Real rest = u.x * total;
-        std::size_t i = 0;
-        while (i + 1 < count_ && rest >= area[i]) rest -= area[i++];
-        // The rows after the last lobe are of weight 0.
-        while (i > 0 && !(area[i] > 0)) rest = area[--i];
-        rest = std::min(rest, area[i]);
-
-        const Real beta = lobe_alpha_[i];
-        const Direction<Real> w = normalized(Direction<Real>{beta * v.x, beta * v.y, v.z});
-        Direction<Real> h;
-        const Real ggx = lobe_area<2>(v.z, across2, B_[i], weight_[0][i], 0, 0);
-        const Real student =
-            greatest_power_ == 2 ? Real{0} : lobe_area<4>(v.z, across2, B_[i], 0, weight_[1][i], 0);
-        if (greatest_power_ == 2 || rest < ggx) {
-            h = sample_cap(-w.z, {ggx > 0 ? std::min(rest / ggx, Real{1}) : Real{0}, u.y});
-            h = {h.x + w.x, h.y + w.y, std::max(Real{0}, h.z + w.z)};
-        } else {
-            const bool third = rest - ggx < student || greatest_power_ == 3;
-            const Real part = third ? student : area[i] - ggx - student;
-            const Real left = rest - ggx - (third ? Real{0} : student);
-            h = sample_visible_student(third ? 1 : 2, w,
-                                       {u.y, std::clamp(left / part, Real{0}, Real{1})});
-        }
-        return normalized(Direction<Real>{beta * h.x, beta * h.y, h.z});
     }
 
     /// Drawn from sample() or, with the probability alpha, so that the direction that reflects v is
@@ -236,14 +235,28 @@ public:
         return bounded(v, frame).pdf(m, density);
     }
 
+    // The same for arrays, on thread_count() threads. Throws InvalidInput unless all have one
+    // length.
+    LTMD_API void sample_mixed(std::span<const Direction<Real>> v, std::span<const Uniform<Real>> u,
+                               std::span<Direction<Real>> out) const;
+    LTMD_API void pdf_mixed(std::span<const Direction<Real>> v, std::span<const Direction<Real>> m,
+                            std::span<Real> out) const;
+    LTMD_API void sample_bounded(std::span<const Direction<Real>> v,
+                                 std::span<const Uniform<Real>> u, const LobeFrame<Real>& frame,
+                                 std::span<Direction<Real>> out) const;
+    LTMD_API void pdf_bounded(std::span<const Direction<Real>> v,
+                              std::span<const Direction<Real>> m, const LobeFrame<Real>& frame,
+                              std::span<Real> out) const;
+
 private:
-    static constexpr std::size_t lanes = 4;
+    using Shares = LobeShares<Real, GTRLobes::capacity>;
+    static constexpr std::size_t lanes = Shares::lanes;
 
     BoundedNormals<Real> bounded(const Direction<Real>& v, const LobeFrame<Real>& frame) const {
         if (greatest_power_ > 2)
             throw InvalidInput("bounded visible normals need gamma <= 2, not " +
                                std::to_string(gamma_));
-        return {{lobe_alpha_.data(), count_}, {weight_[0].data(), count_}, v, frame};
+        return {lobe_alpha_.data(), weight_[0].data(), count_, v, frame};
     }
 
     template <int n>
@@ -303,22 +316,26 @@ private:
 
     /// sin^2(theta_m) of the share u of the normals nearest to the pole.
     Real sample_sin2(Real u) const {
-        if (!(sine2_ > 0)) return u;
         // log((1 - (1 - alpha^2) cos^2) / alpha^2).
-        const Real e =
-            sample_power_ == 0 ? u * log_range_ : -std::log1p(u * sample_scale_) / sample_power_;
-        return std::min(Real{1}, alpha2_ / sine2_ * std::expm1(std::min(e, log_range_)));
+        const Real e = sample_power_ == 0 ? u * log_range_
+                                          : -elementary::log1p(u * sample_scale_) / sample_power_;
+        const Real sin2 = elementary::min(
+            Real{1}, sample_ratio_ * elementary::expm1(elementary::min(e, log_range_)));
+        return sine2_ > 0 ? sin2 : u;
     }
 
     double alpha_, gamma_;
     GTRMasking masking_;
     Real alpha2_, inverse_alpha2_, sine2_, power_, peak_;
-    Real log_range_, sample_scale_, sample_power_;
+    Real log_range_, sample_scale_, sample_power_, sample_ratio_;
     int greatest_power_;
     std::size_t count_;
     std::array<Real, GTRLobes::capacity> B_, lobe_alpha_;
     std::array<std::array<Real, GTRLobes::capacity>, 3> weight_{};
     std::array<Real, 5> spline_;
 };
+
+extern template LTMD_API AnyDistribution<float>::AnyDistribution(GTR<float>);
+extern template LTMD_API AnyDistribution<double>::AnyDistribution(GTR<double>);
 
 }  // namespace ltmd::inline v0

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "ltmd/any_distribution.h"
 #include "ltmd/beckmann.h"
 #include "ltmd/bounded_normals.h"
 #include "ltmd/errors.h"
@@ -44,6 +45,7 @@ public:
             weight_[count_++] = static_cast<Real>(lobe.weight);
             ggx_count_ += lobe.kind == LobeKind::ggx;
         }
+        padded_count_ = (count_ + Shares::lanes - 1) / Shares::lanes * Shares::lanes;
     }
 
     /// Number of lobes, and of those that are GGX: these come first.
@@ -72,26 +74,20 @@ public:
         return ggx / z + beckmann;
     }
 
-    Real projected_area(const Direction<Real>& v) const {
-        std::array<Real, capacity> area{};
-        return areas(v, area);
-    }
+    Real projected_area(const Direction<Real>& v) const { return areas(v).total(); }
 
     Direction<Real> sample(const Uniform<Real>& u) const {
-        Real rest = u.y;
-        const std::size_t i = pick(weight_, rest);
-        const Uniform<Real> inside{u.x, rest};
+        const auto [i, place] =
+            Shares(padded_count_, [&](std::size_t lobe) { return weight_[lobe]; }).pick(u.y);
+        const Uniform<Real> inside{u.x, place};
         return from_unit(i, i < ggx_count_ ? ggx_.sample(inside) : beckmann_.sample(inside));
     }
 
     Direction<Real> sample_visible(const Direction<Real>& v, const Uniform<Real>& u) const {
-        std::array<Real, capacity> area{};
-        Real rest = u.x * areas(v, area);
-        const std::size_t i = pick(area, rest);
+        const auto [i, place] = areas(v).pick(u.x);
         const Direction<Real> w = normalized(stretched(i, v));
-        if (i >= ggx_count_) return from_unit(i, beckmann_.sample_visible(w, {rest, u.y}));
-        const Direction<Real> c = sample_cap(-w.z, {rest, u.y});
-        return from_unit(i, {c.x + w.x, c.y + w.y, std::max(Real{0}, c.z + w.z)});
+        if (i >= ggx_count_) return from_unit(i, beckmann_.sample_visible(w, {place, u.y}));
+        return from_unit(i, sample_visible_ggx(w, {place, u.y}));
     }
 
     /// Visible normals for reflection of a unit vector v (see bounded_normals.h), under M of a
@@ -111,12 +107,23 @@ public:
         return bounded(v, frame).pdf(m, D);
     }
 
+    // The same for arrays, on thread_count() threads. Throws InvalidInput unless all have one
+    // length.
+    LTMD_API void sample_bounded(std::span<const Direction<Real>> v,
+                                 std::span<const Uniform<Real>> u, const LobeFrame<Real>& frame,
+                                 std::span<Direction<Real>> out) const;
+    LTMD_API void pdf_bounded(std::span<const Direction<Real>> v,
+                              std::span<const Direction<Real>> m, const LobeFrame<Real>& frame,
+                              std::span<Real> out) const;
+
 private:
+    using Shares = LobeShares<Real, capacity>;
+
     BoundedNormals<Real> bounded(const Direction<Real>& v, const LobeFrame<Real>& frame) const {
         if (ggx_count_ < count_)
             throw InvalidInput("bounded visible normals are those of GGX lobes; " +
                                std::to_string(count_ - ggx_count_) + " lobes are Beckmann's");
-        return {alpha(), weight(), v, frame};
+        return {alpha_.data(), weight_.data(), padded_count_, v, frame};
     }
 
     /// P22 / z^4 at slopes of the square across2 / z2.
@@ -135,24 +142,17 @@ private:
         return std::numbers::inv_pi_v<Real> * (ggx + beckmann / (floor * floor));
     }
 
-    Real areas(const Direction<Real>& v, std::array<Real, capacity>& area) const {
+    /// The lobes' projected areas.
+    Shares areas(const Direction<Real>& v) const {
         const Real z = v.z, across2 = v.x * v.x + v.y * v.y;
-        for (std::size_t i = 0; i < ggx_count_; ++i)
-            area[i] = weight_[i] * (z + std::sqrt(z * z + alpha_[i] * alpha_[i] * across2)) / 2;
-        for (std::size_t i = ggx_count_; i < count_; ++i)
-            area[i] = weight_[i] * beckmann_.projected_area(stretched(i, v));
-        Real sum = 0;
-        for (std::size_t i = 0; i < count_; ++i) sum += area[i];
-        return sum;
-    }
-
-    /// The lobe in whose share of the sum `rest` falls; `rest` becomes its place there, in [0, 1].
-    std::size_t pick(const std::array<Real, capacity>& shares, Real& rest) const {
-        std::size_t i = 0;
-        while (i + 1 < count_ && rest >= shares[i]) rest -= shares[i++];
-        while (i > 0 && !(shares[i] > 0)) rest = shares[--i];
-        rest = std::min(rest / shares[i], Real{1});
-        return i;
+        const auto ggx = [&](std::size_t i) {
+            return weight_[i] * (z + std::sqrt(z * z + alpha_[i] * alpha_[i] * across2)) / 2;
+        };
+        if (ggx_count_ == count_) return Shares(padded_count_, ggx);
+        return Shares(padded_count_, [&](std::size_t i) {
+            if (i < ggx_count_) return ggx(i);
+            return i < count_ ? weight_[i] * beckmann_.projected_area(stretched(i, v)) : Real{0};
+        });
     }
 
     Direction<Real> stretched(std::size_t i, const Direction<Real>& v) const {
@@ -162,7 +162,7 @@ private:
         return normalized(stretched(i, m));
     }
 
-    std::size_t count_ = 0, ggx_count_ = 0;
+    std::size_t count_ = 0, padded_count_ = 0, ggx_count_ = 0;
     std::array<Real, capacity> alpha_{}, weight_{};
     // Lobes are these, stretched.
     GGX<Real> ggx_{1};
@@ -192,5 +192,8 @@ struct FittedLobes {
 /// beyond one GGX lobe and Beckmann lobes. Throws InvalidInput unless alpha is in [1e-4, 1], gamma
 /// in [0, 4] and max_lobes in [1, 6].
 LTMD_API FittedLobes fit_lobes(double alpha, double gamma, int max_lobes = 6);
+
+extern template LTMD_API AnyDistribution<float>::AnyDistribution(LobeMixture<float>);
+extern template LTMD_API AnyDistribution<double>::AnyDistribution(LobeMixture<double>);
 
 }  // namespace ltmd::inline v0

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <numbers>
 
@@ -13,6 +15,52 @@
 /// stretched to these (microsurface-transformations, eq. 28).
 namespace ltmd::inline v0 {
 
+/// Shares of the lobes of a mixture, of which one is picked.
+template <std::floating_point Real, std::size_t capacity>
+class LobeShares {
+public:
+    /// Lobes come in fours, so that loops over them vectorise; the last may be of weight 0.
+    static constexpr std::size_t lanes = 4;
+    static_assert(capacity % lanes == 0);
+
+    /// Takes share(i) of the lobes i < count, `count` divisible by 4.
+    template <class Share>
+    LobeShares(std::size_t count, const Share& share) : fours_(count / lanes) {
+        for (std::size_t i = 0; i < count; ++i) share_[i] = share(i);
+        for (std::size_t i = 0; i < fours_; ++i) {
+            const Real* s = &share_[lanes * i];
+            total_ += four_[i] = (s[0] + s[1]) + (s[2] + s[3]);
+        }
+    }
+
+    Real total() const { return total_; }
+    Real operator[](std::size_t i) const { return share_[i]; }
+
+    struct Pick {
+        std::size_t lobe;
+        Real place;
+    };
+    /// The lobe in whose share of the total u in [0, 1] falls, and its place there, in [0, 1]. The
+    /// total must be positive.
+    Pick pick(Real u) const {
+        Real rest = u * total_;
+        std::size_t four = 0;
+        while (four + 1 < fours_ && rest >= four_[four]) rest -= four_[four++];
+        const Real* s = &share_[lanes * four];
+        const Real two = s[0] + s[1], three = two + s[2];
+        std::size_t i = lanes * four + (rest >= s[0]) + (rest >= two) + (rest >= three);
+        rest -= rest >= three ? three : rest >= two ? two : rest >= s[0] ? s[0] : Real{0};
+        while (i > 0 && !(share_[i] > 0)) rest = share_[--i];
+        return {i, std::min(rest / share_[i], Real{1})};
+    }
+
+private:
+    std::size_t fours_;
+    Real total_ = 0;
+    std::array<Real, capacity> share_;
+    std::array<Real, capacity / lanes> four_;
+};
+
 /// A point c of the spherical cap c_z >= lowest, uniform in [0, 1]^2 by area.
 template <std::floating_point Real>
 Direction<Real> sample_cap(Real lowest, const Uniform<Real>& u) {
@@ -22,6 +70,14 @@ Direction<Real> sample_cap(Real lowest, const Uniform<Real>& u) {
     const Real z = share * (1 - lowest) + lowest;
     const Real radius = std::sqrt(std::max(Real{0}, (1 - z) * (1 + z)));
     return {radius * cosine, radius * sine, z};
+}
+
+/// A visible normal of a GGX lobe from the unit vector w (w_z >= 0), not normalised: the visible
+/// half of a sphere's normals is a cap of reflected directions.
+template <std::floating_point Real>
+Direction<Real> sample_visible_ggx(const Direction<Real>& w, const Uniform<Real>& u) {
+    const Direction<Real> c = sample_cap(-w.z, u);
+    return {c.x + w.x, c.y + w.y, std::max(Real{0}, c.z + w.z)};
 }
 
 /// The visible normals of slopes with the density n - 1 over pi (1 + |slope|^2)^-n, n = 2 + extra,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "ltmd/any_distribution.h"
 #include "ltmd/std_distribution.h"
 
 namespace ltmd::inline v0 {
@@ -21,5 +22,8 @@ public:
 private:
     double exponent_;
 };
+
+extern template LTMD_API AnyDistribution<float>::AnyDistribution(Phong<float>);
+extern template LTMD_API AnyDistribution<double>::AnyDistribution(Phong<double>);
 
 }  // namespace ltmd::inline v0

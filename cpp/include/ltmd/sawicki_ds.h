@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "ltmd/any_distribution.h"
 #include "ltmd/require_range.h"
 #include "ltmd/visible_normals.h"
 
@@ -61,5 +62,8 @@ private:
 
     Real N_;
 };
+
+extern template LTMD_API AnyDistribution<float>::AnyDistribution(SawickiDS<float>);
+extern template LTMD_API AnyDistribution<double>::AnyDistribution(SawickiDS<double>);
 
 }  // namespace ltmd::inline v0

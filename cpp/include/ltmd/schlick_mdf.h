@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "ltmd/any_distribution.h"
 #include "ltmd/require_range.h"
 #include "ltmd/visible_normals.h"
 
@@ -63,5 +64,8 @@ private:
 
     Real m_;
 };
+
+extern template LTMD_API AnyDistribution<float>::AnyDistribution(SchlickMDF<float>);
+extern template LTMD_API AnyDistribution<double>::AnyDistribution(SchlickMDF<double>);
 
 }  // namespace ltmd::inline v0

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "ltmd/any_distribution.h"
 #include "ltmd/require_range.h"
 #include "ltmd/visible_normals.h"
 
@@ -62,5 +63,8 @@ private:
     double alpha_;
     Real exponent_;
 };
+
+extern template LTMD_API AnyDistribution<float>::AnyDistribution(Sheen<float>);
+extern template LTMD_API AnyDistribution<double>::AnyDistribution(Sheen<double>);
 
 }  // namespace ltmd::inline v0

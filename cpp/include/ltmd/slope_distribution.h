@@ -29,6 +29,7 @@ namespace ltmd::inline v0 {
 ///
 /// One whose members have no branches, call nothing that is not inline and take any input may say
 /// `static constexpr bool vectorizes = true;` then AnyDistribution evaluates arrays in vectors.
+/// Where that is so of P22, D and sample but not of what takes a view, it is `normals_vectorize`.
 template <class T>
 concept MicrofacetDistribution =
     std::floating_point<typename T::Real> &&
@@ -39,6 +40,12 @@ concept MicrofacetDistribution =
         { d.sample(u) } -> std::same_as<Direction<typename T::Real>>;
         { d.sample_visible(v, u) } -> std::same_as<Direction<typename T::Real>>;
     };
+
+template <class T>
+inline constexpr bool views_vectorize = requires { requires T::vectorizes; };
+template <class T>
+inline constexpr bool normals_vectorize =
+    views_vectorize<T> || requires { requires T::normals_vectorize; };
 
 /// The functions that follow from the four members above. A distribution may define its own D or
 /// projected_area where that is more exact.
@@ -89,7 +96,7 @@ private:
     /// value() if valid, else 0; where there shall be no branches, value() is called anyway.
     template <class Value>
     static Real where(bool valid, const Value& value) {
-        if constexpr (requires { requires Derived::vectorizes; }) {
+        if constexpr (normals_vectorize<Derived>) {
             const Real computed = value();
             return valid ? computed : Real{0};
         } else {

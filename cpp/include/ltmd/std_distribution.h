@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "ltmd/any_distribution.h"
 #include "ltmd/export.h"
 #include "ltmd/require_range.h"
 #include "ltmd/slope_distribution.h"
@@ -163,5 +164,8 @@ LTMD_API double std_lambda_rational(double a, double gamma);
 
 extern template class StudentSlopes<float>;
 extern template class StudentSlopes<double>;
+
+extern template LTMD_API AnyDistribution<float>::AnyDistribution(STD<float>);
+extern template LTMD_API AnyDistribution<double>::AnyDistribution(STD<double>);
 
 }  // namespace ltmd::inline v0

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "ltmd/any_distribution.h"
 #include "ltmd/visible_normals.h"
 
 namespace ltmd::inline v0 {
@@ -36,5 +37,8 @@ public:
         return p22 > 0 ? static_cast<Real>(p22 / (z * z * z * z)) : Real{0};
     }
 };
+
+extern template LTMD_API AnyDistribution<float>::AnyDistribution(Tabulated<float>);
+extern template LTMD_API AnyDistribution<double>::AnyDistribution(Tabulated<double>);
 
 }  // namespace ltmd::inline v0

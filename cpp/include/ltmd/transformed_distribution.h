@@ -15,7 +15,8 @@ class TransformedDistribution
     : public SlopeDistribution<TransformedDistribution<Base>, typename Base::Real> {
 public:
     using Real = typename Base::Real;
-    static constexpr bool vectorizes = requires { requires Base::vectorizes; };
+    static constexpr bool vectorizes = views_vectorize<Base>;
+    static constexpr bool normals_vectorize = ltmd::normals_vectorize<Base>;
 
     /// Throws InvalidInput, with M's numbers, unless M is finite and invertible (condition at most
     /// 1e6).
