@@ -18,7 +18,7 @@ import scipy.optimize
 
 ALPHA_STEPS = 16  # of alpha from 1 to 1e-4, see node_alpha
 GAMMA_STEPS = 8  # gamma = 0 ... 2 and 2 ... 4 in quarters
-MAX_LOBES = (5, 6)  # for gamma <= 2, and beyond
+MAX_LOBES = 6
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 OUTPUTS = (ROOT / "cpp/src/lobe_table.h", ROOT / "osl/include/ltmd_lobe_table.h")
 
@@ -218,4 +218,4 @@ def write(tables):
 
 
 if __name__ == "__main__":
-    write({(half, n): fit_grid(half, n) for half in (0, 1) for n in range(1, MAX_LOBES[half] + 1)})
+    write({(half, n): fit_grid(half, n) for half in (0, 1) for n in range(1, MAX_LOBES + 1)})

@@ -40,6 +40,7 @@ std::span<const double> lobe_table(bool beyond, int lobes) {
     static constexpr double to_2_3[] = {LTMD_LOBE_TABLE_TO_2_3};
     static constexpr double to_2_4[] = {LTMD_LOBE_TABLE_TO_2_4};
     static constexpr double to_2_5[] = {LTMD_LOBE_TABLE_TO_2_5};
+    static constexpr double to_2_6[] = {LTMD_LOBE_TABLE_TO_2_6};
     static constexpr double to_4_1[] = {LTMD_LOBE_TABLE_TO_4_1};
     static constexpr double to_4_2[] = {LTMD_LOBE_TABLE_TO_4_2};
     static constexpr double to_4_3[] = {LTMD_LOBE_TABLE_TO_4_3};
@@ -47,7 +48,8 @@ std::span<const double> lobe_table(bool beyond, int lobes) {
     static constexpr double to_4_5[] = {LTMD_LOBE_TABLE_TO_4_5};
     static constexpr double to_4_6[] = {LTMD_LOBE_TABLE_TO_4_6};
     static constexpr std::span<const double> tables[2][6] = {
-        {to_2_1, to_2_2, to_2_3, to_2_4, to_2_5}, {to_4_1, to_4_2, to_4_3, to_4_4, to_4_5, to_4_6}};
+        {to_2_1, to_2_2, to_2_3, to_2_4, to_2_5, to_2_6},
+        {to_4_1, to_4_2, to_4_3, to_4_4, to_4_5, to_4_6}};
     return tables[beyond][lobes - 1];
 }
 
@@ -146,9 +148,8 @@ FittedLobes fit_lobes(double alpha, double gamma, int max_lobes) {
     require_range("gamma", gamma, 0, 4);
     require_range("max_lobes", max_lobes, 1, 6);
     const bool beyond = gamma > 2;
-    const int count = beyond ? max_lobes : std::min(max_lobes, 5);
-    const auto table = lobe_table(beyond, count);
-    const auto n = static_cast<std::size_t>(count);
+    const auto table = lobe_table(beyond, max_lobes);
+    const auto n = static_cast<std::size_t>(max_lobes);
     const Stencil a = stencil(alpha_node(beyond, alpha) * alpha_steps, alpha_steps);
     const Stencil g = stencil(4 * (gamma - (beyond ? 2 : 0)), gamma_steps);
     std::vector<double> values(2 * n, 0);
@@ -160,7 +161,7 @@ FittedLobes fit_lobes(double alpha, double gamma, int max_lobes) {
                 values[k] += a.weight[i] * g.weight[j] * table[row * 2 * n + k];
         }
     const double log_alpha2 = 2 * std::log(alpha);
-    const double most = *std::max_element(values.begin() + count, values.end());
+    const double most = *std::max_element(values.begin() + max_lobes, values.end());
     FittedLobes fitted{};
     double sum = 0;
     for (std::size_t k = 0; k < n; ++k) {
