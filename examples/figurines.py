@@ -10,7 +10,7 @@ import solids
 BIRD = {"Body": (0.0015, 0.013, 0.026), "Belly": (0.13, 0.030, 0.004), "Beak": (0.22, 0.08, 0.006)}
 DOG = {"Body": (0.036, 0.0035, 0.0025), "Belly": (0.13, 0.065, 0.03), "Collar": (0.003, 0.04, 0.08)}
 BLACK = (0.002, 0.002, 0.002)
-SIZE, DETAIL, STEP = (1152, 300), 137, 0.016
+SIZE, DETAIL, STEP = (1152, 300), 136, 0.016
 
 
 def bird(p):
@@ -198,7 +198,7 @@ def render_detail(args, name, left, bottom, side):
 
 
 def main():
-    args = gallery.start("figurines", samples=40)
+    args = gallery.start("figurines", samples=56)
     import bpy
 
     gallery.studio(

@@ -50,7 +50,7 @@ def main():
         perspective=True,
     )
     gallery.stage((0.09, 0.092, 0.10), sky=[(0, 0.02), (0.5, 0.07), (1, 0.5)])
-    bpy.context.scene.cycles.max_bounces = 3  # the inside of the neck sees itself
+    bpy.context.scene.cycles.max_bounces = 3  # the neck reflects the body
     outline = solids.smooth_curve(OUTSIDE + INSIDE, 260)
     vase = gallery.link(bpy.data.objects.new("Vase", solids.turned("Vase", outline, 192)))
     rows = []
