@@ -178,9 +178,12 @@ void ltmd_lobe_energy(LtmdSurface surface, float preserve_energy, output LtmdLob
             if (weights[i] > 0 && (rough || preserve_energy > 0)) {
                 float gain = ltmd_closure_gain(i < lobes.ggx, surface, alphas[i]);
                 albedo += weights[i] / gain;
-                if (rough && preserve_energy < 1)
-                    weights[i] *= mix(ltmd_random_albedo(i < lobes.ggx, surface, alphas[i]) * gain,
-                                      1.0, max(preserve_energy, 0.0));
+                if (rough && preserve_energy < 1) {
+                    // The noise of a faint lobe is not seen.
+                    int pairs = clamp((int)(1 + 16 * weights[i]), 2, 8);
+                    float part = ltmd_random_albedo(i < lobes.ggx, surface, alphas[i], pairs);
+                    weights[i] *= mix(part * gain, 1.0, max(preserve_energy, 0.0));
+                }
             }
         }
         if (preserve_energy > 0)
