@@ -6,7 +6,7 @@
 #   examples/run.sh --list   their names
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
-scenes=(balloon suzanne presets tension_views plate figurines vases knot beyond_lobes)
+scenes=(balloon suzanne presets tension_views plate figurines vases knot beyond_lobes tails)
 # Made by the Python package alone: NAME.py --out FILE.png.
 plots=(sphere_grid torus_knot mdf_conversion ellipsoid_ndf masking distributions lobe_error)
 all=("${scenes[@]}" "${plots[@]}")
