@@ -6,7 +6,7 @@ from . import add_input, add_tension_outputs, ends
 from .rest_positions import add_rest_positions
 
 NAME = "LTMD Live Tension"
-VERSION = 1
+VERSION = 2
 
 
 def build(tree):
