@@ -28,13 +28,14 @@ def target_objects(context, name):
     return meshes
 
 
-def set_up(obj, kind="PRESENT", osl=True, method=None):
+def set_up(obj, kind="PRESENT", osl=True, method=None, together=()):
     """Set up one object; return sentences for the user. Raises SourceError.
 
     kind: the source; PRESENT keeps the one the object has, and is live on a new one.
     osl: take the groups in Open Shading Language, or their twins of stock nodes.
     method: how materials follow, of drive or surface; None leaves those that are set up as they
     are, and replaces the others' reflection.
+    together: the objects that get the same source, and so keep the materials they share.
     """
     if not is_writable(obj):
         raise source.SourceError(f"{obj.name}: {REFUSAL}")
@@ -62,7 +63,7 @@ def set_up(obj, kind="PRESENT", osl=True, method=None):
         told += sentences
         done += 1
         if not (textures and had_source):
-            told += source.switch(obj, material, "LIVE" if textures else kind)
+            told += source.switch(obj, material, "LIVE" if textures else kind, together)
     if not done:
         if obj.ltmd.source == "NONE":
             _forget(obj)
@@ -128,8 +129,7 @@ def _forget(obj):
     mesh = obj.data
     if is_writable(mesh):
         modifier.clear_stored(mesh)
-    shared = any(o.data == mesh and o.ltmd.source == "LIVE" for o in bpy.data.objects)
-    if is_writable(mesh) and not shared:
+    if is_writable(mesh) and not source.has_live_twin(obj):
         source.clear_rest(mesh)
     if obj.ltmd.slot_added:
         obj.ltmd.slot_added = False
@@ -172,6 +172,7 @@ class OnObjects:
         except source.SourceError as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
+        self.objects = objects
         done = 0
         for obj in objects:
             try:
@@ -240,7 +241,9 @@ class LTMD_OT_setup(SettingUp, bpy.types.Operator):
     )
 
     def work(self, obj):
-        return set_up(obj, self.source, self.osl(bpy.context))
+        # Each keeps its own source with PRESENT.
+        together = () if self.source == "PRESENT" else self.objects
+        return set_up(obj, self.source, self.osl(bpy.context), together=together)
 
 
 class LTMD_OT_store_tension(OnObjects, bpy.types.Operator):

@@ -155,10 +155,18 @@ def measure(obj, kind):
             f"{obj.name}: the Attribute source needs a UV map; unwrap the mesh, or choose Tensor"
         )
     modifier.add(obj, kind, rest_positions(obj), uv_map)
-    if is_writable(obj.data):
+    if is_writable(obj.data) and not has_live_twin(obj):
         clear_rest(obj.data)
     limit = modifier.limits(obj)
     return [f"{obj.name}: {limit}"] if limit else []
+
+
+def has_live_twin(obj):
+    """Does another object with the same mesh read its rest state?"""
+    return any(
+        other.data == obj.data and other != obj and other.ltmd.source == "LIVE"
+        for other in bpy.data.objects
+    )
 
 
 def store_frame(obj):
@@ -251,14 +259,18 @@ def assign(obj, old, new):
             slot.material = new
 
 
-def switch(obj, material, kind):
+def switch(obj, material, kind, together=()):
     """Wire a set-up material to a source in GROUPS; return sentences for the user.
 
-    A material that other objects show with another source becomes a copy for obj.
+    A material that other objects show with another source becomes a copy for obj, unless they are
+    among the ones that are switched `together`.
     """
     told = []
-    others = [other.name for other in users(material) if other.ltmd.source not in (kind, "NONE")]
-    others = [name for name in others if name != obj.name]
+    others = [
+        other.name
+        for other in users(material)
+        if other.ltmd.source not in (kind, "NONE") and other != obj and other not in together
+    ]
     if others:
         shared, material = material, own_copy(obj, material)
         told.append(_told_of_copy(obj, shared, others))

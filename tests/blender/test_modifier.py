@@ -212,6 +212,33 @@ other.name = "Other"
 bpy.ops.ltmd.setup(object_name="Other", source="TENSOR")
 out["shared"] = [obj.material_slots[0].material == other.material_slots[0].material,
                  obj.ltmd.source, other.ltmd.source]
+# Switched together, two objects keep one material; a twin of a live one leaves it its rest state.
+pair = []
+for name in ("One", "Two"):
+    twin = sphere(name, 1)
+    twin.data.materials.append(bpy.data.materials.get("Pair") or bpy.data.materials.new("Pair"))
+    key(twin, bend(co))
+    pair.append(twin)
+bpy.data.materials["Pair"].use_nodes = True
+for o in bpy.context.scene.objects:
+    o.select_set(o in pair)
+bpy.context.view_layer.objects.active = pair[0]
+bpy.ops.ltmd.setup()
+bpy.ops.ltmd.setup(source="ATTRIBUTE")
+out["together"] = [[o.ltmd.source, o.material_slots[0].material.name] for o in pair]
+linked = pair[0].copy()
+bpy.context.scene.collection.objects.link(linked)
+linked.name = "Linked"
+bpy.ops.ltmd.setup(object_name="One", source="LIVE")
+bpy.ops.ltmd.setup(object_name="Linked", source="TENSOR")
+out["twin"] = "ltmd_rest" in pair[0].data.attributes
+for o in (*pair, linked):
+    bpy.ops.ltmd.remove(object_name=o.name)
+for o in (linked, *pair):
+    mesh = o.data
+    bpy.data.objects.remove(o)
+    if not mesh.users:
+        bpy.data.meshes.remove(mesh)
 # Saved and opened again, at another pose, the modifier still measures.
 path = ARGUMENTS["path"]
 bpy.ops.wm.save_as_mainfile(filepath=path)
@@ -259,6 +286,8 @@ report(before=before, after=after, **out)
         assert (source, modifiers, groups) == (kind, [name], [f"LTMD {kind.title()} Tension"])
         assert not [a for a in attributes if a.startswith("ltmd")]
     assert result["shared"] == [False, "ATTRIBUTE", "TENSOR"]
+    assert result["together"] == [["ATTRIBUTE", "Pair"]] * 2
+    assert result["twin"] is True
     assert result["rest"] < 1e-6 and result["moved"] > 0.2
     assert result["stored"][:2] == [0, 0] and "frame 1" in result["stored"][2]
     assert result["measured again"] == [False, 1]
