@@ -213,7 +213,9 @@ def _hidden(obj, kept, positions):
     hidden.ltmd.source = "NONE"
     hidden.ltmd.rest_object = None
     hidden[REST_KEY] = obj.name
-    hidden.hide_render = True
+    # Appending brings it into the scene, and into sight in the viewport.
+    hidden.hide_render = hidden.hide_viewport = hidden.hide_select = True
+    hidden.display_type = "BOUNDS"
     if not np.allclose(_shape(obj), np.eye(3), atol=1e-4):
         # The metric of the rendered object. Not for all, as a moving object would have its rest
         # state evaluated at every frame.
