@@ -30,7 +30,6 @@ def apply(material, preset):
     if preset.base:
         base = [n for n in surface.our_nodes(material, "surface") if n.type == "BSDF_DIFFUSE"]
         kept += ["Base Color" for n in base if not _set(material, n.inputs["Color"], preset.base)]
-    nodes.remove_unused()
     if not kept:
         return []
     return [f"{material.name}: {', '.join(kept)} as the nodes linked to it say, not as the preset"]

@@ -43,7 +43,7 @@ for key, preset in presets.PRESETS.items():
     if key in ("RUBBER_BALLOON", "GOLD", "VASE_160_10", "TORUS_KNOT"):
         looks[key] = render()[..., :3]
 values = {k: v for k, v in values.items() if k in ARGUMENTS["keys"]}
-groups = sorted({t["ltmd_group"] for t in bpy.data.node_groups})
+groups = sorted(t["ltmd_group"] for t in bpy.data.node_groups if t.users)
 bpy.ops.ltmd.remove(object_name="Cube")
 left = len(bpy.data.node_groups)
 
@@ -68,8 +68,15 @@ try:
     bpy.ops.ltmd.preset(object_name="Cube", preset="GOLD")
 except RuntimeError as error:
     refused = str(error)
-report(bad=bad, values=values, looks=looks, groups=groups, left=left, said=said, rough=rough,
-       same=dump(material) == before, alone=alone, weights=weights, refused=refused)
+same = dump(material) == before
+
+bpy.ops.ltmd.convert_material(object_name="Cube", method="DRIVE")
+try:
+    bpy.ops.ltmd.preset(object_name="Cube", preset="GOLD")
+except RuntimeError as error:
+    refused += str(error)
+report(bad=bad, values=values, looks=looks, groups=groups, left=left, said=said,
+       rough=rough, same=same, alone=alone, weights=weights, refused=refused)
 """
 
 # alpha, gamma and the larger stretch of the material, as printed in microsurface-transformations.
@@ -109,3 +116,31 @@ def test_every_preset():
     assert found["rough"] == "TEX_NOISE" and "Roughness, Base Color" in found["said"][0]
     assert found["alone"] == [False, 1.0] and found["weights"] == ["MATH", "MATH"]
     assert found["same"] and "not set up" in found["refused"]
+    assert "convert it by replacing" in found["refused"]
+
+
+TWINS = """
+from trees import *
+from blender_addon import surface
+cycles(osl=False)
+obj = cube()
+material = new_material("M", obj)
+before = dump(material)
+bpy.ops.ltmd.setup(object_name="Cube", use_osl=False)
+twins = []
+for key in ("GOLD", "RUBBER_BALLOON", "TORUS_KNOT"):
+    bpy.ops.ltmd.preset(object_name="Cube", preset=key)
+    node = surface.lobe(material)
+    twins.append([node.node_tree["ltmd_group"], value(node.inputs["Tail"])])
+bpy.ops.ltmd.remove(object_name="Cube")
+report(twins=twins, same=dump(material) == before)
+"""
+
+
+@pytest.mark.long
+def test_a_device_without_osl_gets_the_twins():
+    found = run(TWINS)
+    kinds = ("Conductor", "Dielectric", "Glossy")
+    assert [name for name, _ in found["twins"]] == [f"LTMD {kind} (no OSL)" for kind in kinds]
+    assert [tail for _, tail in found["twins"]] == pytest.approx([2.0, 1.7, 1.0])
+    assert found["same"]
