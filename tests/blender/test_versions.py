@@ -76,8 +76,11 @@ first = dump(material)
 refused = ""
 from blender_addon import osl_script
 folder = osl_script.folder
-osl_script.folder = lambda: __import__("pathlib").Path(ARGUMENTS["folder"])
-(osl_script.folder() / "ltmd_glossy.osl").write_text("shader ltmd_glossy( { broken")
+broken = __import__("pathlib").Path(ARGUMENTS["folder"])
+for shader in folder().glob("*.osl"):
+    (broken / shader.name).write_text(osl_script.inlined(shader))
+(broken / "ltmd_glossy.osl").write_text("shader ltmd_glossy( { broken")
+osl_script.folder = lambda: broken
 try:
     bpy.ops.ltmd.update_nodes()
 except RuntimeError as error:
