@@ -31,7 +31,8 @@ def target_objects(context, name):
 def set_up(obj, kind="PRESENT", osl=True, method=None, together=()):
     """Set up one object; return sentences for the user. Raises SourceError.
 
-    kind: the source; PRESENT keeps the one the object has, and is live on a new one.
+    kind: the source; PRESENT keeps the one the object has; a new one gets live tension, without
+    osl the tensor of a modifier.
     osl: take the groups in Open Shading Language, or their twins of stock nodes.
     method: how materials follow, of drive or surface; None leaves those that are set up as they
     are, and replaces the others' reflection.
@@ -40,7 +41,8 @@ def set_up(obj, kind="PRESENT", osl=True, method=None, together=()):
     if not is_writable(obj):
         raise source.SourceError(f"{obj.name}: {REFUSAL}")
     if kind == "PRESENT":
-        kind = "LIVE" if obj.ltmd.source == "NONE" else obj.ltmd.source
+        first = "LIVE" if osl else "TENSOR"  # what stock nodes can read, without a UV map
+        kind = first if obj.ltmd.source == "NONE" else obj.ltmd.source
     textures = kind == "TEXTURE"
     _compile("LIVE" if textures else kind, osl, method)
     if not any(slot.material for slot in obj.material_slots):
@@ -69,6 +71,11 @@ def set_up(obj, kind="PRESENT", osl=True, method=None, together=()):
             _forget(obj)
         raise source.SourceError("; ".join(refused))
     obj.ltmd.source = kind
+    if kind == "LIVE" and not osl:
+        told.append(
+            f"{obj.name}: live tension needs Open Shading Language and is shown at rest; choose "
+            "Attribute or Tensor as source, or bake"
+        )
     for material in source.materials(obj):
         device.match(material, osl)
         false_colour.refresh(material, osl)
@@ -233,7 +240,11 @@ class LTMD_OT_setup(SettingUp, bpy.types.Operator):
         name="Source",
         description="Where the highlights get the deformation from",
         items=(
-            ("PRESENT", "Present", "As it is; live on an object that is not set up"),
+            (
+                "PRESENT",
+                "Present",
+                "As it is; on an object that is not set up what suits the device",
+            ),
             *(item for item in SOURCES if item[0] in source.GROUPS),
         ),
         default="PRESENT",

@@ -189,9 +189,9 @@ kinds = {"ShaderNodeBsdfPrincipled": ("Anisotropic", "Anisotropic Rotation", Tru
          "ShaderNodeBsdfAnisotropic": ("Anisotropy", "Rotation", False)}
 cases = []
 for kind, (amount, turn, rough) in kinds.items():
-    for deformation, anisotropic, rotation in (
-        ([[1.5, .4], [0, .8]], 0, 0), ([[1.5, .4], [0, .8]], .4, .2),
-        ([[.7, .2], [.3, 1.2]], .3, 0), ([[2, 0], [0, .5]], 0, 0)):
+    for deformation, anisotropic, rotation, own in (
+        ([[1.5, .4], [0, .8]], 0, 0, 0), ([[1.5, .4], [0, .8]], .4, .2, 0),
+        ([[.7, .2], [.3, 1.2]], .3, 0, .5), ([[2, 0], [0, .5]], 0, 0, 0)):
         obj = affine_quad(deformation, rest_attribute=False)
         material = new_material("M", obj)
         bsdf = principled(material)
@@ -203,6 +203,12 @@ for kind, (amount, turn, rough) in kinds.items():
             bsdf.inputs["Metallic"].default_value = 1
         tangent = material.node_tree.nodes.new("ShaderNodeTangent")
         tangent.direction_type = "UV_MAP"
+        # The user's tangent is that of another UV map, turned against the tension's.
+        other = obj.data.uv_layers.new(name="Own")
+        c, s = np.cos(own), np.sin(own)
+        corners = np.array([v.co[:2] for v in obj.data.vertices]) @ [[c, -s], [s, c]]
+        other.uv.foreach_set("vector", corners.astype(np.float32).ravel())
+        tangent.uv_map = "Own"
         material.node_tree.links.new(tangent.outputs[0], bsdf.inputs["Tangent"])
         bsdf.inputs["Roughness"].default_value = .5
         anisotropic *= 1 if rough else -1
@@ -216,7 +222,7 @@ for kind, (amount, turn, rough) in kinds.items():
         c, s = f[:, 0] / np.linalg.norm(f[:, 0])
         tension = np.array([[c, s], [-s, c]]) @ f
         stretch = (1 - .9 * anisotropic)**.5 - 1 if rough else anisotropic
-        ax, ay, angle = lobe(.25, tension @ material_matrix(stretch, 2 * np.pi * rotation, 0))
+        ax, ay, angle = lobe(.25, tension @ material_matrix(stretch, 2 * np.pi * rotation + own, 0))
         direction = np.array([[c, -s], [s, c]]) @ (np.cos(angle), np.sin(angle))
         if rough:
             direction = (-direction[1], direction[0])
@@ -302,9 +308,19 @@ out["removed"] = setup.remove(obj), surface.is_set_up(good), other.ltmd.source
 report(out=out)
 """,
         arguments=str(tmp_path),
-        check=False,
     )
-    assert result["_code"] == 0, result["_output"]
+    out = result["out"]
+    error, source, stored = out["linked"]
+    assert "make it local first" in error and source == "NONE" and not stored
+    assert "make it local first" in out["override"]
+    error, same = out["nothing"]
+    assert "no Principled, Glossy or Metallic BSDF" in error and same
+    assert "no object named Missing" in out["no mesh"]
+    told, good, plain, limits = out["told"]
+    assert good and not plain and "10 : 1" in limits
+    assert any("the Principled BSDF of Hidden is inside a node group" in words for words in told)
+    assert out["both"] == [["FINISHED"], ["LIVE", "LIVE"], 1]
+    assert out["removed"] == [["Good is shared: also removed from B"], False, "NONE"]
 
 
 def test_without_osl_the_twins_are_taken_and_follow_the_device():
@@ -312,11 +328,23 @@ def test_without_osl_the_twins_are_taken_and_follow_the_device():
         PRELUDE
         + """
 obj = cube()
+obj.shape_key_add(name="Basis")
+key = obj.shape_key_add(name="Long")
+for point in key.data:
+    point.co.x *= 1.5
+key.value = 1
 material = new_material("M", obj)
 scene(osl=False)
 out = {}
 bpy.ops.ltmd.setup(object_name="Cube", use_osl=False)
 out["twin"] = surface.lobe(material).label, device.uses_osl(bpy.context), render()[..., :3].mean()
+out["source"] = obj.ltmd.source, [n.label for n in surface.our_nodes(material, "source")]
+stretched = render()
+surface.lobe(material).inputs["Strength"].default_value = 0
+out["seen"] = np.abs(render() - stretched).max()
+surface.lobe(material).inputs["Strength"].default_value = 1
+out["live"] = setup.set_up(obj, "LIVE", osl=False)
+setup.set_up(obj, "TENSOR", osl=False)
 out["same"] = device.mismatch(material, bpy.context)
 surface.lobe(material).inputs["Roughness"].default_value = .3
 bpy.context.scene.cycles.shading_system = True
@@ -333,6 +361,9 @@ report(out=out)
     )
     out = result["out"]
     assert out["twin"][:2] == ["LTMD Glossy (no OSL)", False] and out["twin"][2] > 0.01
+    assert out["source"][0] == "TENSOR" and "LTMD Tensor Tension (no OSL)" in out["source"][1]
+    assert out["seen"] > 0.01
+    assert any("live tension needs" in sentence for sentence in out["live"])
     assert out["same"] is None and "update" in out["changed"]
     assert out["shader"][:2] == ["LTMD Glossy", None]
     assert np.isclose(out["shader"][2], 0.3)
