@@ -3,7 +3,7 @@
 
 import bpy
 
-from . import nodes, surface, versions
+from . import drive, nodes, surface, versions
 from .nodes.replace import replace
 
 
@@ -56,7 +56,8 @@ def mismatch(material, context):
         return None
     if osl:
         return f"{material.name} uses stock nodes, but Open Shading Language is on: update it"
-    return f"{material.name} renders black here, without Open Shading Language: update it"
+    shows = "shows the rest state" if drive.is_driven(material) else "renders black"
+    return f"{material.name} {shows} here, without Open Shading Language: update it"
 
 
 def match(material, osl):
@@ -91,8 +92,7 @@ def _to_change(material, osl):
         ours = node.type == "GROUP" and node[surface.KEY] != surface.EEVEE
         name = node.node_tree.get(nodes.GROUP_KEY, "") if ours else ""
         plain = name.removesuffix(" (no OSL)")
-        # Driven nodes keep the stock nodes everywhere.
-        if plain != surface.PARAMETERS and plain in known and f"{plain} (no OSL)" in known:
+        if plain in known and f"{plain} (no OSL)" in known:
             wanted = plain if osl else f"{plain} (no OSL)"
             if name != wanted:
                 changes.append((node, known[wanted]))

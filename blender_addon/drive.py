@@ -3,14 +3,13 @@
 roughness, anisotropy and tangent follow the deformation.
 
 What was linked or typed at a driven socket becomes an input of our node; surface.give_back() brings
-it back. The parameters are those of stock nodes on every device: so EEVEE shows them as well, at
-rest or with the tension of an attribute or image.
+it back. Where the parameters' shader does not run, as in EEVEE, they give the roughness at rest.
 """
 
 import json
 
 from . import nodes, source, surface
-from .nodes import base_anisotropy, parameters_no_osl
+from .nodes import base_anisotropy, parameters, parameters_no_osl
 from .nodes.replace import curves
 
 METHOD = "DRIVE"
@@ -24,8 +23,9 @@ DRIVEN = {
 }
 
 
-def drive(material):
+def drive(material, osl=True):
     """Drive the material's BSDF nodes; return sentences for the user. Raises SourceError."""
+    module = parameters if osl else parameters_no_osl
     record = {"method": METHOD}
     if not material.node_tree or not material.use_nodes:
         record["use_nodes"] = False
@@ -51,9 +51,9 @@ def drive(material):
     box = surface.own(tree.nodes.new("NodeFrame"), "surface")
     box.label = "LTMD"
     for node in driven:
-        _drive(material, node, "Roughness", "Normal")
+        _drive(material, node, module, "Roughness", "Normal")
         if node.type == "BSDF_PRINCIPLED" and _in_use(tree, node.inputs["Coat Weight"]):
-            _drive(material, node, "Coat Roughness", "Coat Normal")
+            _drive(material, node, module, "Coat Roughness", "Coat Normal")
     tree.nodes.active = tree.nodes.get(record["active"])
     material.ltmd.record = json.dumps(record)
     material.ltmd.set_up = surface.VERSION
@@ -108,11 +108,11 @@ def _inside(tree):
     return found
 
 
-def _drive(material, node, roughness, normal):
+def _drive(material, node, module, roughness, normal):
     """Parameters for one roughness socket of the node; for the base's also its anisotropy."""
     tree = material.node_tree
     inputs = node.inputs
-    ours = _new(tree, node, parameters_no_osl, inputs[roughness].name)
+    ours = _new(tree, node, module, inputs[roughness].name)
     if inputs[normal].is_linked:
         _copy_link(tree, inputs[normal], ours.inputs["Normal"])
     _take(material, inputs[roughness], ours.inputs["Roughness"])

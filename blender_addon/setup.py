@@ -97,14 +97,14 @@ def _compile(kind, osl, method):
 
 def _follow(material, method, osl):
     """Let the material follow by the method; (had it been set up before, sentences)."""
-    add = drive.drive if method == drive.METHOD else lambda m: surface.add(m, osl)
+    add = drive.drive if method == drive.METHOD else surface.add
     if not surface.is_set_up(material):
-        return False, add(material)
+        return False, add(material, osl)
     present = drive.METHOD if drive.is_driven(material) else surface.METHOD
     if method in (None, present):
         return True, []
     false_colour.hide(material)
-    return True, surface.exchange(material, add)
+    return True, surface.exchange(material, lambda m: add(m, osl))
 
 
 def remove(obj):

@@ -10,7 +10,7 @@ import json
 from math import pi, sqrt
 
 from . import nodes
-from .nodes import conductor, dielectric, glossy, glossy_no_osl, parameters_no_osl
+from .nodes import conductor, dielectric, glossy, glossy_no_osl, parameters
 from .nodes.replace import replace
 
 VERSION = 1
@@ -22,7 +22,7 @@ TAKEN = "ltmd_taken"  # of a node: [[its input, identifier of the driven node's 
 # The groups a set-up material may reflect by, and their socket for the colour of the reflection.
 LOBES = {glossy.NAME: "Color", conductor.NAME: "Base Color", dielectric.NAME: "Coat Tint"}
 
-PARAMETERS = parameters_no_osl.NAME.removesuffix(" (no OSL)")
+PARAMETERS = parameters.NAME
 
 NOT_CARRIED = (
     "Subsurface Weight",

@@ -4,6 +4,7 @@
 from .. import osl_script
 from . import add_output, ends
 from .material_inputs import add_roughness_inputs, add_surface_inputs, link_script
+from .node_math import Scalar, Vector, arrange
 
 NAME = "LTMD Parameters"
 VERSION = 1
@@ -53,3 +54,10 @@ def build(tree):
         if socket.name:
             name = OUTPUTS.get(socket.name, socket.name.replace(" ", ""))
             tree.links.new(script.outputs[name], socket)
+    # Where scripts do not run their outputs are 0: there the roughness at rest is shown.
+    direction = Vector(tree, script.outputs["Direction"])
+    runs = direction.dot(direction) > 0.5
+    at_rest = Scalar(tree, start.outputs["Roughness"])
+    roughness = runs.choose(Scalar(tree, script.outputs["OutRoughness"]), at_rest)
+    roughness.feed(end.inputs["Roughness"])
+    arrange(tree)

@@ -27,8 +27,8 @@ def replace(node, module, renamed=None):
     order = [new_name(socket.name) for socket in node.inputs]
     values = {new_name(s.name): (s.type, _value(s)) for s in node.inputs}
     hidden = {new_name(s.name) for s in (*node.inputs, *node.outputs) if s.hide}
-    sources = {new_name(s.name): s.links[0].from_socket for s in node.inputs if s.is_linked}
-    targets = {new_name(s.name): [wire.to_socket for wire in s.links] for s in node.outputs}
+    sources = {new_name(s.name): _ends(s)[0] for s in node.inputs if s.is_linked}
+    targets = {new_name(s.name): _ends(s) for s in node.outputs}
     for wire in [wire for s in (*node.inputs, *node.outputs) for wire in s.links]:
         tree.links.remove(wire)
 
@@ -45,10 +45,11 @@ def replace(node, module, renamed=None):
         if value is not None:
             socket.default_value = value
         if socket.name in sources:
-            tree.links.new(sources[socket.name], socket)
+            other, muted = sources[socket.name]
+            tree.links.new(other, socket).is_muted = muted
     for socket in node.outputs:
-        for target in targets.get(socket.name, ()):
-            tree.links.new(socket, target)
+        for other, muted in targets.get(socket.name, ()):
+            tree.links.new(socket, other).is_muted = muted
     for socket in (*node.inputs, *node.outputs):
         socket.hide = socket.name in hidden
     _move_animation(tree, node.name, order, [socket.name for socket in node.inputs])
@@ -56,6 +57,11 @@ def replace(node, module, renamed=None):
         node.label = module.NAME
     if before and node.name.split(".")[0] == before.split(".")[0]:
         node.name = module.NAME
+
+
+def _ends(socket):
+    """[(the socket at the other end, is the link muted)]"""
+    return [(w.to_socket if socket.is_output else w.from_socket, w.is_muted) for w in socket.links]
 
 
 def _value(socket):
