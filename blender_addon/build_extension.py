@@ -77,6 +77,9 @@ def stage(folder, wheels):
     (folder / "osl").mkdir()
     for shader in sorted((ROOT / "osl").glob("*.osl")):
         (folder / "osl" / shader.name).write_text(inlined(shader), encoding="utf-8")
+    # The groups of stock nodes read the fitted lobes from it.
+    (folder / "osl" / "include").mkdir()
+    shutil.copy(ROOT / "osl" / "include" / "ltmd_lobe_table.h", folder / "osl" / "include")
     (folder / "wheels").mkdir()
     for wheel in wheels:
         shutil.copy(wheel, folder / "wheels")

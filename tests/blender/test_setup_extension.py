@@ -65,10 +65,13 @@ light = bpy.data.objects.new("Sun", bpy.data.lights.new("Sun", "SUN"))
 scene.collection.objects.link(light)
 bpy.ops.ltmd.setup(object_name="Plane")
 picture = render()
+import importlib
+gtr_lobes = importlib.import_module("bl_ext.user_default.ltmd.nodes.gtr_lobes")
+lobes = [len(gtr_lobes.table(beyond, 4)) for beyond in (False, True)]
 enabled = [name for name in bpy.context.preferences.addons.keys() if name.endswith(".ltmd")]
 import addon_utils
 addon_utils.disable(enabled[0])
-report(picture=picture[..., :3], enabled=enabled, gone=not hasattr(bpy.types.Object, "ltmd"))
+report(picture=picture[..., :3], enabled=enabled, lobes=lobes, gone=not hasattr(bpy.types.Object, "ltmd"))
 """,
         arguments=str(package),
         addon=False,
@@ -76,6 +79,7 @@ report(picture=picture[..., :3], enabled=enabled, gone=not hasattr(bpy.types.Obj
     assert result["enabled"] == ["bl_ext.user_default.ltmd"]
     assert min(p for row in result["picture"] for pixel in row for p in pixel) > 0.01
     assert result["gone"]
+    assert result["lobes"] == [2, 2]  # what the groups of stock nodes read from the shaders' folder
     assert "Traceback" not in result["_output"]
 
 
