@@ -71,7 +71,8 @@ lobes = [len(gtr_lobes.table(beyond, 4)) for beyond in (False, True)]
 enabled = [name for name in bpy.context.preferences.addons.keys() if name.endswith(".ltmd")]
 import addon_utils
 addon_utils.disable(enabled[0])
-report(picture=picture[..., :3], enabled=enabled, lobes=lobes, gone=not hasattr(bpy.types.Object, "ltmd"))
+report(picture=picture[..., :3], enabled=enabled, lobes=lobes,
+       gone=not hasattr(bpy.types.Object, "ltmd"))
 """,
         arguments=str(package),
         addon=False,
