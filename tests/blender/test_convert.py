@@ -316,6 +316,14 @@ for each in (obj, other):
     each.select_set(True)
 out["both"] = attempt(), [o.ltmd.source for o in (obj, other)], len(surface.takers(good))
 out["removed"] = setup.remove(obj), surface.is_set_up(good), other.ltmd.source
+
+before = everything(good)
+bpy.ops.ed.undo_push(message="Before")
+bpy.ops.ltmd.convert_material(object_name="A")
+bpy.ops.ed.undo_push(message="Convert")
+converted = drive.is_driven(bpy.data.materials["Good"])
+bpy.ops.ed.undo()
+out["undo"] = converted, everything(bpy.data.materials["Good"]) == before
 report(out=out)
 """,
         arguments=str(tmp_path),
@@ -331,6 +339,7 @@ report(out=out)
     assert good and not plain and "10 : 1" in limits
     assert any("the Principled BSDF of Hidden is inside a node group" in words for words in told)
     assert out["both"] == [["FINISHED"], ["LIVE", "LIVE"], 1]
+    assert out["undo"] == [True, True]
     assert out["removed"] == [["Good is shared: also removed from B"], False, "NONE"]
 
 
