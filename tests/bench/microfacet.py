@@ -3,7 +3,8 @@
 
 Prints nanoseconds per direction and the ratios to the bar, Mitsuba's LLVM variant. That takes the
 memory for results from its own cache of freed arrays: ours write to arrays of earlier calls, out=;
-the time with fresh arrays is printed too. Beckmann is masked by the rational fit there, exactly here.
+the time with fresh arrays is printed too. Beckmann is masked by the rational fit there, by the
+exact Lambda here.
 """
 
 import argparse

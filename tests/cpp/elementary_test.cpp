@@ -88,7 +88,6 @@ TEST(Elementary, StaysFiniteAtTheEnds) {
     EXPECT_EQ(elementary::pow(1e30F, -4.0F), 0);
     EXPECT_EQ(elementary::pow(1e30F, 4.0F), infinity);
     EXPECT_NEAR(elementary::log(0.0F), -87.3365, 1e-4);
-    EXPECT_NEAR(elementary::log1p(-1.0F), -87.3365, 1e-4);
     EXPECT_NEAR(elementary::log1p(infinity), 88.7228, 1e-4);
 }
 

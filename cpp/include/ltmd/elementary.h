@@ -91,10 +91,10 @@ inline float log_of_normal(float x) {
 inline float log(float x) { return log_of_normal(max(std::numeric_limits<float>::min(), x)); }
 inline double log(double x) { return std::log(x); }
 
-/// log(1 + x) within 3 for x > -1; at -1 that of the smallest normal number.
+/// log(1 + x) within 3 for x > -1.
 inline float log1p(float x) {
     const float bounded = min(x, std::numeric_limits<float>::max());
-    const float sum = max(std::numeric_limits<float>::min(), 1 + bounded);
+    const float sum = 1 + bounded;
     return log_of_normal(sum) + (bounded - (sum - 1)) / sum;
 }
 inline double log1p(double x) { return std::log1p(x); }

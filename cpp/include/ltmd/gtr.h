@@ -83,9 +83,14 @@ public:
         peak_ = static_cast<Real>(std::numbers::inv_pi * phi(log_alpha2) / phi(y) /
                                   std::pow(alpha2, gamma));
         log_range_ = static_cast<Real>(-log_alpha2);
-        sample_scale_ = static_cast<Real>(std::expm1(-y));
-        sample_power_ = static_cast<Real>(gamma - 1);
+        // Random numbers are no nearer to 1 than that.
+        sample_scale_ = std::max(static_cast<Real>(std::expm1(-y)),
+                                 std::numeric_limits<Real>::epsilon() / 2 - 1);
+        const auto sample_power = static_cast<Real>(gamma - 1);
+        sample_factor_ = sample_power == 0 ? Real{0} : 1 / sample_power;
+        sample_linear_ = sample_power == 0 ? log_range_ : Real{0};
         sample_ratio_ = sine2_ > 0 ? alpha2_ / sine2_ : Real{0};
+        sample_flat_ = sine2_ > 0 ? Real{0} : Real{1};
 
         const GTRLobes lobes =
             gtr_lobes(alpha, gamma, gtr_node_count(alpha, gamma, sizeof(Real) < sizeof(double)));
@@ -316,18 +321,18 @@ private:
 
     /// sin^2(theta_m) of the share u of the normals nearest to the pole.
     Real sample_sin2(Real u) const {
-        // log((1 - (1 - alpha^2) cos^2) / alpha^2).
-        const Real e = sample_power_ == 0 ? u * log_range_
-                                          : -elementary::log1p(u * sample_scale_) / sample_power_;
-        const Real sin2 = elementary::min(
-            Real{1}, sample_ratio_ * elementary::expm1(elementary::min(e, log_range_)));
-        return sine2_ > 0 ? sin2 : u;
+        // log((1 - (1 - alpha^2) cos^2) / alpha^2); where a factor vanishes it is e = u log_range_,
+        // and sin^2 = u for alpha = 1. Sums, as choices by members would become branches.
+        const Real e = u * sample_linear_ - elementary::log1p(u * sample_scale_) * sample_factor_;
+        const Real sin2 =
+            u * sample_flat_ + sample_ratio_ * elementary::expm1(elementary::min(e, log_range_));
+        return elementary::min(Real{1}, sin2);
     }
 
     double alpha_, gamma_;
     GTRMasking masking_;
     Real alpha2_, inverse_alpha2_, sine2_, power_, peak_;
-    Real log_range_, sample_scale_, sample_power_, sample_ratio_;
+    Real log_range_, sample_scale_, sample_factor_, sample_linear_, sample_ratio_, sample_flat_;
     int greatest_power_;
     std::size_t count_;
     std::array<Real, GTRLobes::capacity> B_, lobe_alpha_;

@@ -97,8 +97,6 @@ void wide_loop(const Function& function, std::size_t n, Out* out, const In*... i
         return;
     }
     detail::run_wide([=] {
-        // What is read from a local variable may be read without need: choices make no branches.
-        const Function local = function;
         detail::Block<Out> result;
         std::tuple<detail::Block<In>...> blocks;
         for (std::size_t first = 0; first < n; first += detail::block_size) {
@@ -110,7 +108,7 @@ void wide_loop(const Function& function, std::size_t n, Out* out, const In*... i
                     };
                     (load(block, in), ...);
                     for (std::size_t i = 0; i < count; ++i)
-                        result.store(i, local(block.item(i)...));
+                        result.store(i, function(block.item(i)...));
                     for (std::size_t i = 0; i < count; ++i) out[first + i] = result.item(i);
                 },
                 blocks);
