@@ -232,8 +232,8 @@ def _discard(hidden):
 
 def _shape(obj):
     """The symmetric matrix of an object's scale, 1 if it is uniform."""
-    matrix = np.array(obj.matrix_world, float)[:3, :3]
-    volume = abs(np.linalg.det(matrix))
+    matrix = np.array(obj.matrix_world.to_3x3(), float)
+    volume = abs(obj.matrix_world.to_3x3().determinant())
     return matrix.T @ matrix / volume ** (2 / 3) if volume > 0 else np.zeros((3, 3))
 
 
