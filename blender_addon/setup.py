@@ -83,8 +83,8 @@ def set_up(obj, kind="PRESENT", osl=True, method=None, together=()):
 
 
 def _compile(kind, osl, method):
-    """Make the groups, while nothing is changed yet. Raises RuntimeError if a shader fails."""
-    needed = [source.GROUPS[kind]] if osl else []
+    """Make the groups, while nothing is changed yet. Raises SourceError or RuntimeError."""
+    needed = [source.group_for(source.GROUPS[kind])]
     if osl and method != drive.METHOD:
         needed.append(glossy)
     try:

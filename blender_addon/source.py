@@ -5,7 +5,15 @@ import bpy
 import numpy as np
 
 from . import modifier, nodes, rest_state, surface
-from .nodes import attribute_tension, live_tension, tensor_tension, texture_tension
+from .nodes import (
+    attribute_tension,
+    attribute_tension_no_osl,
+    live_tension,
+    tensor_tension,
+    tensor_tension_no_osl,
+    texture_tension,
+    texture_tension_no_osl,
+)
 from .nodes.rest_positions import REST_ATTRIBUTE
 from .writable import is_local, is_writable
 
@@ -27,6 +35,26 @@ COPYING = {"ARRAY", "EDGE_SPLIT", "MASK", "MIRROR", "NODES", "TRIANGULATE"}
 
 # The group that gives the tension, for the sources measured at every frame.
 GROUPS = {"LIVE": live_tension, "ATTRIBUTE": attribute_tension, "TENSOR": tensor_tension}
+# A Blender built without OSL compiles no shader. (Where only the device has none, device.match()
+# exchanges the groups.)
+COMPILES = bpy.app.build_options.cycles_osl
+_TWINS = {
+    attribute_tension: attribute_tension_no_osl,
+    tensor_tension: tensor_tension_no_osl,
+    texture_tension: texture_tension_no_osl,
+}
+
+
+def group_for(module):
+    """The group, or its twin if this Blender cannot make the group. Raises SourceError."""
+    if COMPILES:
+        return module
+    if module not in _TWINS:
+        raise SourceError(
+            "Live tension needs Open Shading Language, which this Blender is built without: choose "
+            "Attribute or Tensor as source, or bake"
+        )
+    return _TWINS[module]
 
 
 class SourceError(Exception):
@@ -279,7 +307,7 @@ def switch(obj, material, kind, together=()):
     lobe, box = surface.lobe(material), surface.frame(material)
     uv = surface.own(tree.nodes.new("ShaderNodeUVMap"), "source", box)
     uv.uv_map = obj.ltmd.uv_map
-    tension = surface.own(nodes.group_node(tree, GROUPS[kind]), "source", box)
+    tension = surface.own(nodes.group_node(tree, group_for(GROUPS[kind])), "source", box)
     _place(lobe, tension, uv)
     tree.links.new(uv.outputs["UV"], tension.inputs["UV"])
     _connect(material, tension)
@@ -300,7 +328,7 @@ def switch_to_texture(obj, material, files):
     numbered like the scene's frames. A material that other objects show becomes a copy for obj.
     """
     try:
-        nodes.ensure(texture_tension)
+        nodes.ensure(group_for(texture_tension))
     except RuntimeError as error:
         return [f"The material {material.name} stays as it is: {error}"]
     told = []
@@ -330,7 +358,7 @@ def switch_to_texture(obj, material, files):
         picture.location = (lobe.location.x - 700, lobe.location.y - 300 * index)
         _show_sequence(picture, _image(obj, udim, entry["path"]), entry["frames"])
         tree.links.new(shifted, picture.inputs["Vector"])
-        tension = surface.own(nodes.group_node(tree, texture_tension), "source", box)
+        tension = surface.own(nodes.group_node(tree, group_for(texture_tension)), "source", box)
         tension.location = (lobe.location.x - 300, lobe.location.y - 300 * index)
         tension.inputs["Tile"].default_value = udim
         tree.links.new(picture.outputs["Color"], tension.inputs["Image"])

@@ -504,3 +504,39 @@ report(said=said, same=dump(material) == before, data=[data, counts()],
     assert result["same"] and result["data"][0] == result["data"][1]
     assert result["source"] == ["NONE", "NONE", 0] and result["slots"] == 0
     assert not any("ltmd_rest" in names for names in result["attributes"])
+
+
+def test_a_blender_built_without_osl_sets_up_with_stock_nodes():
+    result = run(
+        PRELUDE
+        + """
+from blender_addon import device, osl_script
+
+def no_compiler(node, name, scene=None):
+    raise RuntimeError(f"compiled {name}")
+
+osl_script.fill = no_compiler
+device.has_osl = lambda context: False
+source.COMPILES = False
+obj = cube()
+material = new_material("M", obj)
+before = dump(material)
+said = []
+bpy.ops.ltmd.convert_material(object_name="Cube", method="DRIVE")
+out = [obj.ltmd.source, [n.label for n in surface.our_nodes(material, "source")]]
+try:
+    bpy.ops.ltmd.setup(object_name="Cube", source="LIVE")
+except RuntimeError as error:
+    said.append(str(error))
+files = {1001: {"path": "/tmp/none.0001.exr", "frames": [1, 2]}}
+source.switch_to_texture(obj, material, files)
+out += [obj.ltmd.source, [n.label for n in surface.our_nodes(material, "source")]]
+bpy.ops.ltmd.remove(object_name="Cube")
+report(out=out, said=said, same=dump(material) == before)
+"""
+    )
+    kind, names, textures, last = result["out"]
+    assert kind == "TENSOR" and "LTMD Tensor Tension (no OSL)" in names
+    assert "Live tension needs Open Shading Language" in result["said"][0]
+    assert textures == "TEXTURE" and "LTMD Texture Tension (no OSL)" in last
+    assert result["same"]
