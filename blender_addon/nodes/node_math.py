@@ -184,13 +184,16 @@ def inputs(tree, start):
 
 def arrange(tree):
     """Place the nodes in columns from left to right, each behind all that feed it."""
+    # A socket's own links are searched for in all of the tree's at every access.
+    feeding = {}
+    for wire in tree.links:
+        feeding.setdefault(wire.to_node, []).append(wire.from_node)
     column = {}
 
     def place(node):
         if node not in column:
             column[node] = 0
-            feeding = [wire.from_node for s in node.inputs for wire in s.links]
-            column[node] = 1 + max((place(other) for other in feeding), default=-1)
+            column[node] = 1 + max((place(other) for other in feeding.get(node, ())), default=-1)
         return column[node]
 
     filled = {}
