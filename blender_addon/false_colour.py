@@ -55,6 +55,8 @@ def show(material, mode=0, limit=2.0, osl=True):
     measured = next((n for n in surface.takers(material) if n[surface.KEY] == "surface"), None)
     if measured is None:
         raise source.SourceError(f"{material.name} has no LTMD node: press Set Up LTMD again")
+    if tree.get_output_node("CYCLES") is None:
+        raise source.SourceError(f"{material.name} has no Material Output: add one")
     module = tension_view if osl else tension_view_no_osl
     for needed in (module, tension_view_no_osl):
         nodes.ensure(needed)

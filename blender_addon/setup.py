@@ -97,28 +97,50 @@ def _compile(kind, osl, method):
 
 def _follow(material, method, osl):
     """Let the material follow by the method; (had it been set up before, sentences)."""
-    add = drive.drive if method == drive.METHOD else surface.add
+    present = drive.METHOD if drive.is_driven(material) else surface.METHOD
+    add = drive.drive if (method or present) == drive.METHOD else surface.add
     if not surface.is_set_up(material):
         return False, add(material, osl)
-    present = drive.METHOD if drive.is_driven(material) else surface.METHOD
+    if surface.lobe(material) is None:
+        # The user has deleted it: all is made anew.
+        _restore(material)
+        return False, add(material, osl)
     if method in (None, present):
         return True, []
+    trial = material.copy()
+    try:
+        _restore(trial)
+        add(trial, osl)  # a refusal comes before anything is changed
+    except source.SourceError as error:
+        raise source.SourceError(str(error).replace(trial.name, material.name)) from None
+    finally:
+        bpy.data.materials.remove(trial)
     false_colour.hide(material)
     return True, surface.exchange(material, lambda m: add(m, osl))
 
 
+def _restore(material):
+    """The user's own tree again."""
+    false_colour.hide(material)
+    source.clear(material)
+    surface.remove(material)
+
+
 def remove(obj):
-    """Undo set_up(); return sentences for the user."""
+    """Undo set_up(); return sentences for the user. Raises SourceError."""
+    chosen = source.materials(obj)
+    for material in chosen:
+        if not is_local(material):
+            raise source.SourceError(f"{material.name}: {NODES_REFUSAL}")
     told = []
-    for material in source.materials(obj):
+    for material in chosen:
+        created = material.ltmd.created
+        _restore(material)
         for other in source.users(material):
             if other != obj:
                 told.append(f"{material.name} is shared: also removed from {other.name}")
-                _forget(other)
-        false_colour.hide(material)
-        source.clear(material)
-        created = material.ltmd.created
-        surface.remove(material)
+                if not source.materials(other):
+                    _forget(other)
         if created:
             for slot in obj.material_slots:
                 if slot.material == material:

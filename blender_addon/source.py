@@ -112,6 +112,15 @@ def texture_limits(obj, frame):
     return None
 
 
+def limits(obj, frame):
+    """What the object's source cannot show at this frame, as a sentence, or None."""
+    if obj.ltmd.source == "LIVE":
+        return live_limits(obj)
+    if obj.ltmd.source == "TEXTURE":
+        return texture_limits(obj, frame)
+    return modifier_limits(obj) if obj.ltmd.source in modifier.STORED else None
+
+
 def rest_positions(obj):
     """The object's rest state as float32[vertices, 3] in its own space. Raises SourceError."""
     settings = obj.ltmd
@@ -153,7 +162,7 @@ def _positions_at(obj, frame):
             f"{making[0].name}; move them up, or bake the tension"
         )
     scene = bpy.context.scene
-    now = scene.frame_current
+    now, part = scene.frame_current, scene.frame_subframe
     try:
         for m in making:
             m.show_viewport = False
@@ -164,7 +173,7 @@ def _positions_at(obj, frame):
     finally:
         for m in making:
             m.show_viewport = True
-        scene.frame_set(now)
+        scene.frame_set(now, subframe=part)
     return positions.reshape(-1, 3)
 
 
@@ -303,7 +312,7 @@ def switch(obj, material, kind, together=()):
         shared, material = material, own_copy(obj, material)
         told.append(_told_of_copy(obj, shared, others))
     tree = material.node_tree
-    _clear(material)
+    clear(material)
     lobe, box = surface.lobe(material), surface.frame(material)
     uv = surface.own(tree.nodes.new("ShaderNodeUVMap"), "source", box)
     uv.uv_map = obj.ltmd.uv_map
@@ -337,10 +346,10 @@ def switch_to_texture(obj, material, files):
         shared, material = material, own_copy(obj, material)
         told.append(_told_of_copy(obj, shared, others))
     tree = material.node_tree
-    _clear(material)
+    clear(material)
     lobe, box = surface.lobe(material), surface.frame(material)
     uv = surface.own(tree.nodes.new("ShaderNodeUVMap"), "source", box)
-    uv.uv_map = obj.ltmd.uv_map or _render_uv(obj.data)
+    uv.uv_map = obj.ltmd.uv_map or rest_state.default_uv_map(obj.data)
     uv.location = (lobe.location.x - 1100, lobe.location.y)
     previous = None
     for index, (udim, entry) in enumerate(sorted(files.items())):
@@ -373,18 +382,13 @@ def switch_to_texture(obj, material, files):
     return told
 
 
-def _clear(material):
+def clear(material):
     """Remove the present source and the images that only it showed."""
     for node in surface.our_nodes(material, "source"):
         image = getattr(node, "image", None)
         material.node_tree.nodes.remove(node)
         if image and image.users == 0:
             bpy.data.images.remove(image)
-
-
-def clear(material):
-    """Remove the source's nodes."""
-    _clear(material)
 
 
 def _connect(material, tension):
@@ -396,10 +400,6 @@ def _connect(material, tension):
 def _place(lobe, tension, uv):
     tension.location = (lobe.location.x - 300, lobe.location.y)
     uv.location = (lobe.location.x - 550, lobe.location.y)
-
-
-def _render_uv(mesh):
-    return next((layer.name for layer in mesh.uv_layers if layer.active_render), "")
 
 
 def _image(obj, udim, path):

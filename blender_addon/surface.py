@@ -81,10 +81,11 @@ def roughest(node):
     squeeze = widest ** (1 / power) if power > 0 else 0
     if squeeze < 1 / 3:
         return None
+    light = "too bright" if nodes.without_osl(node.node_tree) else "dimmer"
     halo = "; the halo's earlier" if "Tail" in inputs and inputs["Tail"].default_value < 2 else ""
     return (
         f"Where the surface is squeezed below {squeeze:.0%} of its length, the highlight gets "
-        f"dimmer but no wider: the roughness of Cycles ends there{halo}"
+        f"{light} but no wider: the roughness of Cycles ends there{halo}"
     )
 
 
@@ -126,8 +127,8 @@ def own(node, part, parent=None):
 
 
 def frame(material):
-    """The frame around our nodes."""
-    return next(n for n in our_nodes(material, "surface") if n.type == "FRAME")
+    """The frame around our nodes, or None if the user has taken it away."""
+    return next((n for n in our_nodes(material, "surface") if n.type == "FRAME"), None)
 
 
 def add(material, osl=True):
@@ -239,7 +240,10 @@ def _give_back(node):
 
 
 def exchange(material, add_other):
-    """Another method for a set-up material, which keeps its tension; return sentences."""
+    """Another method for a set-up material, which keeps its tension; return sentences.
+
+    add_other() must take the material: with what it refuses, only the source is left.
+    """
     tree = material.node_tree
     old = lobe(material)
     feeding = {
@@ -251,11 +255,9 @@ def exchange(material, add_other):
     for node in sources:
         del node[KEY]
     remove(material)
-    try:
-        told = add_other(material)
-    finally:
-        for node in sources:
-            own(node, "source", frame(material) if is_set_up(material) else None)
+    told = add_other(material)
+    for node in sources:
+        own(node, "source", frame(material))
     for name, socket in feeding.items():
         for node in takers(material):
             tree.links.new(socket, node.inputs[name])

@@ -294,6 +294,11 @@ plain.node_tree.nodes.remove(principled(plain))
 before = everything(plain)
 out["nothing"] = attempt(object_name="A"), before == everything(plain)
 out["no mesh"] = attempt(object_name="Missing")
+setup.set_up(obj)
+before, materials = everything(plain), len(bpy.data.materials)
+out["nothing to drive"] = (attempt(object_name="A"), before == everything(plain),
+                           surface.is_set_up(plain), len(bpy.data.materials) == materials)
+setup.remove(obj)
 
 # A Principled inside a group, one outside.
 good = new_material("Good", obj)
@@ -335,6 +340,8 @@ report(out=out)
     error, same = out["nothing"]
     assert "no Principled, Glossy or Metallic BSDF" in error and same
     assert "no object named Missing" in out["no mesh"]
+    error, *unchanged = out["nothing to drive"]
+    assert "Plain: no Principled, Glossy or Metallic BSDF" in error and all(unchanged)
     told, good, plain, limits = out["told"]
     assert good and not plain and "10 : 1" in limits
     assert any("the Principled BSDF of Hidden is inside a node group" in words for words in told)

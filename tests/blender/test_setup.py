@@ -208,6 +208,81 @@ report(refused=refused, told=told, source=override.ltmd.source,
     assert any("own copy" in sentence for sentence in result["told"])
 
 
+def test_nodes_that_the_user_deleted_come_back_or_are_asked_for():
+    result = run(
+        PRELUDE
+        + """
+from blender_addon import false_colour
+
+obj = cube()
+material = new_material("M", obj)
+before = dump(material)
+nodes = material.node_tree.nodes
+whole = []
+for find in (surface.frame, surface.lobe, lambda m: nodes["LTMD Live Tension"]):
+    setup.set_up(obj)
+    nodes.remove(find(material))
+    setup.set_up(obj)
+    taker = surface.lobe(material)
+    whole.append(taker is not None and taker.inputs["Tension"].is_linked)
+setup.remove(obj)
+same = dump(material) == before
+
+setup.set_up(obj)
+for node in [n for n in nodes if n.type == "OUTPUT_MATERIAL"]:
+    nodes.remove(node)
+try:
+    false_colour.show(material)
+except source.SourceError as error:
+    said = str(error)
+report(whole=whole, same=same, said=said)
+"""
+    )
+    assert result["whole"] == [True] * 3 and result["same"]
+    assert "M has no Material Output" in result["said"]
+
+
+def test_remove_leaves_other_objects_their_own_and_linked_materials_alone(tmp_path):
+    path = str(Path(tmp_path) / "library.blend")
+    run(
+        PRELUDE
+        + """
+obj = cube()
+new_material("Foreign", obj)
+setup.set_up(obj)
+bpy.ops.wm.save_as_mainfile(filepath=ARGUMENTS)
+""",
+        arguments=path,
+    )
+    result = run(
+        PRELUDE
+        + """
+a, b = cube("A"), cube("B")
+shared, own = new_material("Shared", a), new_material("Own", b)
+b.data.materials.append(shared)
+for obj in (a, b):
+    setup.set_up(obj)
+told = setup.remove(a)
+kept = [b.ltmd.source, "ltmd_rest" in b.data.attributes, surface.is_set_up(own)]
+
+with bpy.data.libraries.load(ARGUMENTS, link=True) as (found, wanted):
+    wanted.materials = ["Foreign"]
+foreign = wanted.materials[0]
+a.data.materials[0] = foreign
+nodes = len(foreign.node_tree.nodes)
+try:
+    bpy.ops.ltmd.remove(object_name="A")
+except RuntimeError as error:
+    refused = str(error)
+report(told=told, kept=kept, refused=refused, same=len(foreign.node_tree.nodes) == nodes)
+""",
+        arguments=path,
+    )
+    assert result["told"] == ["Shared is shared: also removed from B"]
+    assert result["kept"] == ["LIVE", True, True]
+    assert "Foreign: nodes of linked" in result["refused"] and result["same"]
+
+
 def test_shared_material_becomes_a_copy_only_for_textures():
     result = run(
         PRELUDE
