@@ -46,17 +46,18 @@ class LTMD_OT_add_node(bpy.types.Operator):
 
     def invoke(self, context, event):
         space = context.space_data
-        if context.region.type == "WINDOW":
+        in_editor = getattr(space, "tree_type", "") == "ShaderNodeTree" and not self.material
+        if in_editor and context.region.type == "WINDOW":
             space.cursor_location_from_region(event.mouse_region_x, event.mouse_region_y)
         done = self.execute(context)
-        if "FINISHED" in done:
+        if in_editor and "FINISHED" in done:
             # Sticks to the pointer until a click.
             bpy.ops.node.translate_attach_remove_on_cancel("INVOKE_DEFAULT")
         return done
 
     def execute(self, context):
-        tree, place = self._target(context)
-        if tree is None or not is_local(tree):
+        tree, owner, place = self._target(context)
+        if tree is None or not is_local(owner):
             words = (
                 NODES_REFUSAL.capitalize()
                 if tree
@@ -81,13 +82,17 @@ class LTMD_OT_add_node(bpy.types.Operator):
         return {"FINISHED"}
 
     def _target(self, context):
+        """(tree or None, the data-block that has it, place of the node)"""
         if self.material:
             material = bpy.data.materials.get(self.material)
-            return material and material.node_tree, (0, 0)
+            return material and material.node_tree, material, (0, 0)
         space = context.space_data
         if getattr(space, "tree_type", "") != "ShaderNodeTree":
-            return None, None
-        return space.edit_tree, space.cursor_location
+            return None, None, None
+        tree = space.edit_tree
+        # A tree inside a material does not say that it is overridden.
+        owner = space.id if tree and tree.is_embedded_data else tree
+        return tree, owner, space.cursor_location
 
 
 class LTMD_MT_add(bpy.types.Menu):

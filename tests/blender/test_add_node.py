@@ -31,8 +31,20 @@ for options in ({"material": "M", "node": "LTMD Warp"}, {"node": "LTMD Warp"}):
         bpy.ops.ltmd.add_node(**options)
     except RuntimeError as error:
         said.append(str(error))
-report(added=added, stock=stock, said=said, same=before == dump(material),
-       texts=len(bpy.data.texts))
+same = before == dump(material)
+
+new_material("Foreign", None)
+library = ARGUMENTS["folder"] + "/library.blend"
+bpy.data.libraries.write(library, {bpy.data.materials["Foreign"]})
+bpy.data.materials.remove(bpy.data.materials["Foreign"])
+with bpy.data.libraries.load(library, link=True) as (found, wanted):
+    wanted.materials = ["Foreign"]
+override = wanted.materials[0].override_create()
+try:
+    bpy.ops.ltmd.add_node(node="LTMD Glossy", material=override.name)
+except RuntimeError as error:
+    said.append(str(error))
+report(added=added, stock=stock, said=said, same=same, texts=len(bpy.data.texts))
 """
 
 
@@ -42,6 +54,7 @@ def test_every_node_of_the_menu(tmp_path):
     for name, group, selected in found["added"]:
         assert name == group and selected
     assert found["stock"] == "LTMD Tension View (no OSL)"
-    compiler, nowhere = found["said"]
+    compiler, nowhere, override = found["said"]
     assert "ltmd_warp could not be compiled" in compiler and "name of a material" in nowhere
+    assert "make it local first" in override
     assert found["same"] and found["texts"] == 0
