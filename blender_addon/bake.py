@@ -900,7 +900,7 @@ class LTMD_OT_bake(bpy.types.Operator):
     )
     half: BoolProperty(
         name="Half Float",
-        description="Store 16 bits a number: a tenth of the size, off by up to 0.05 %",
+        description="Store 16 bits a number: a twentieth of the size, off by up to 0.05 %",
         default=False,
         options={"SKIP_SAVE"},
     )

@@ -5,7 +5,7 @@ import textwrap
 
 import bpy
 
-from . import device, drive, false_colour, library, source, surface, versions
+from . import device, drive, false_colour, library, modifier, source, surface, versions
 from .properties import SOURCES
 from .writable import REFUSAL, is_writable
 
@@ -46,18 +46,9 @@ def draw(layout, context):
     good, words = device.osl_status(context)
     sentence(layout, context, words, icon="NONE" if good else "ERROR")
     sentence(layout, context, state(obj))
-    if obj.ltmd.source == "LIVE":
-        limits = source.live_limits(obj)
-        if limits:
-            sentence(layout, context, limits, icon="INFO")
-    elif obj.ltmd.source in ("ATTRIBUTE", "TENSOR"):
-        limits = source.modifier_limits(obj)
-        if limits:
-            sentence(layout, context, limits, icon="INFO")
-    elif obj.ltmd.source == "TEXTURE":
-        limits = source.texture_limits(obj, context.scene.frame_current)
-        if limits:
-            sentence(layout, context, limits, icon="INFO")
+    words = source.limits(obj, context.scene.frame_current)
+    if words:
+        sentence(layout, context, words, icon="INFO")
     for material in source.materials(obj):
         words = device.mismatch(material, context)
         if words:
@@ -73,6 +64,8 @@ def draw(layout, context):
         row.operator("ltmd.remove", text="Remove").object_name = ""
         name = next(item[1] for item in SOURCES if item[0] == obj.ltmd.source)
         layout.operator_menu_enum("ltmd.setup", "source", text=f"Source: {name}")
+    if modifier.find(obj) and obj.ltmd.source in modifier.STORED:
+        layout.operator("ltmd.store_tension").object_name = ""
     layout.operator_menu_enum("ltmd.convert_material", "method")
 
     draw_older(layout, context)
@@ -194,6 +187,7 @@ def draw_bake(layout, context):
     row.enabled = not problem
     if hasattr(bpy.types, "LTMD_OT_bake"):
         row.operator("ltmd.bake")
+        row.operator("ltmd.bake", text="Resume").resume = True
 
 
 class _Main:

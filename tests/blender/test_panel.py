@@ -9,7 +9,8 @@ PANEL = """
 from layout import Layout
 from trees import *
 import version_1
-from blender_addon import panel, surface, false_colour
+from blender_addon import false_colour, nodes, panel, surface
+from blender_addon.nodes import glossy_no_osl
 
 def words():
     kept = []
@@ -21,6 +22,11 @@ material = new_material("M", obj)
 plain = words()
 bpy.ops.ltmd.setup(object_name="Cube")
 glossy = words()
+bpy.ops.ltmd.setup(object_name="Cube", source="TENSOR")
+tensor = words()
+bpy.ops.ltmd.setup(object_name="Cube", source="LIVE")
+bake = []
+panel.draw_bake(Layout(bake), bpy.context)
 node = surface.lobe(material)
 settings = material.ltmd
 modes = [settings.mode]
@@ -33,6 +39,11 @@ for rough, exact, stretch, shear, strength, response in ARGUMENTS["lobes"]:
                     ("Shear", shear), ("Strength", strength), ("Height Response", response)):
         node.inputs[name].default_value = v
     limits.append(surface.roughest(node))
+
+twin = nodes.group_node(material.node_tree, glossy_no_osl)
+twin.inputs["Roughness"].default_value = 0.7
+limits_without_osl = surface.roughest(twin)
+material.node_tree.nodes.remove(twin)
 
 bpy.ops.ltmd.preset(object_name="Cube", preset="GOLD")
 gold = words(), settings.metal
@@ -52,7 +63,8 @@ version_1.set_up(other, new_material("Old", other))
 bpy.context.view_layer.objects.active = other
 old = words()
 bpy.ops.ltmd.update_nodes()
-report(plain=plain, glossy=glossy, modes=modes, limits=limits, gold=gold, kinds=kinds, shown=shown,
+report(plain=plain, glossy=glossy, tensor=tensor, bake=" ".join(bake), modes=modes, limits=limits,
+       limits_without_osl=limits_without_osl, gold=gold, kinds=kinds, shown=shown,
        directions=directions, old=old, updated=words())
 """
 
@@ -79,6 +91,9 @@ def test_the_panel_says_what_is_set(found):
     assert "Not set up" in found["plain"] and "Show Tension" not in found["plain"]
     for word in ("Roughness", "Tail", "Lobes", "Mode", "Preset", "ltmd.show_tension"):
         assert word in found["glossy"], word
+    assert "ltmd.store_tension" in found["tensor"]
+    assert "ltmd.store_tension" not in found["glossy"]
+    assert "Resume" in found["bake"]
     assert found["modes"] == ["ALL", "REFERENCE", 2]
     words, kind = found["gold"]
     assert kind == "GOLD" and "Extinction" in words and "Edge Tint" not in words
@@ -96,6 +111,7 @@ def test_the_panel_says_what_is_set(found):
 
 
 def test_where_the_roughness_of_cycles_ends(found):
+    assert "dimmer" in found["limits"][1] and "too bright" in found["limits_without_osl"]
     for lobe, said in zip(LOBES, found["limits"], strict=True):
         rough, exact, stretch, shear, strength, response = lobe
         sx = 1 + stretch if stretch < 0 else 1 / (1 - stretch)
