@@ -45,9 +45,15 @@ def set_up(obj, kind="PRESENT", osl=True, method=None, together=()):
         kind = first if obj.ltmd.source == "NONE" else obj.ltmd.source
     textures = kind == "TEXTURE"
     _compile("LIVE" if textures else kind, osl, method)
+    made = None
     if not any(slot.material for slot in obj.material_slots):
-        _new_material(obj)
-    told = source.measure(obj, "LIVE" if textures else kind)
+        made = _new_material(obj)
+    try:
+        told = source.measure(obj, "LIVE" if textures else kind)
+    except source.SourceError:
+        if made:
+            _discard(obj, made)
+        raise
     refused, done = [], 0
     for material in list(dict.fromkeys(s.material for s in obj.material_slots if s.material)):
         if not is_local(material):
@@ -142,11 +148,7 @@ def remove(obj):
                 if not source.materials(other):
                     _forget(other)
         if created:
-            for slot in obj.material_slots:
-                if slot.material == material:
-                    slot.material = None
-            if material.users == 0:
-                bpy.data.materials.remove(material)
+            _discard(obj, material)
     _forget(obj)
     nodes.remove_unused()
     return told
@@ -160,10 +162,26 @@ def _forget(obj):
         modifier.clear_stored(mesh)
     if is_writable(mesh) and not source.has_live_twin(obj):
         source.clear_rest(mesh)
+    _remove_slot(obj)
+
+
+def _remove_slot(obj):
+    """Remove the slot that _new_material() has added, if it is empty again."""
+    materials = obj.data.materials
     if obj.ltmd.slot_added:
         obj.ltmd.slot_added = False
-        if is_writable(mesh) and len(mesh.materials) and mesh.materials[-1] is None:
-            mesh.materials.pop()
+        if is_writable(obj.data) and len(materials) and materials[-1] is None:
+            materials.pop()
+
+
+def _discard(obj, material):
+    """Take the material that _new_material() has made away from the object."""
+    for slot in obj.material_slots:
+        if slot.material == material:
+            slot.material = None
+    if material.users == 0:
+        bpy.data.materials.remove(material)
+    _remove_slot(obj)
 
 
 def _new_material(obj):
@@ -171,7 +189,7 @@ def _new_material(obj):
     if not material.use_nodes:
         material.use_nodes = True
     material.ltmd.created = True
-    if obj.material_slots:
+    if len(obj.data.materials):  # the object's own list may be behind
         if not is_writable(obj.data):
             obj.material_slots[0].link = "OBJECT"
         obj.material_slots[0].material = material
@@ -179,7 +197,9 @@ def _new_material(obj):
         obj.data.materials.append(material)
         obj.ltmd.slot_added = True
     else:
+        bpy.data.materials.remove(material)
         raise source.SourceError(f"{obj.name} has no material slot: {REFUSAL}")
+    return material
 
 
 class OnObjects:

@@ -242,6 +242,25 @@ report(whole=whole, same=same, said=said)
     assert "M has no Material Output" in result["said"]
 
 
+def test_a_refused_source_leaves_no_material_behind():
+    result = run(
+        PRELUDE
+        + """
+obj = cube(uv=False)
+said = []
+for kind, mode in (("ATTRIBUTE", "BASIS"), ("LIVE", "OBJECT")):
+    obj.ltmd.rest_mode = mode
+    try:
+        setup.set_up(obj, kind)
+    except source.SourceError as error:
+        said.append(str(error))
+report(said=said, left=[len(bpy.data.materials), len(obj.data.materials), obj.ltmd.source])
+"""
+    )
+    assert "needs a UV map" in result["said"][0] and "rest object" in result["said"][1]
+    assert result["left"] == [0, 0, "NONE"]
+
+
 def test_remove_leaves_other_objects_their_own_and_linked_materials_alone(tmp_path):
     path = str(Path(tmp_path) / "library.blend")
     run(
