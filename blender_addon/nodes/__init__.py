@@ -89,6 +89,26 @@ def add_tension_outputs(tree):
     add_output(tree, "Tangent", "Vector", "Direction of the UV map's U on the surface")
 
 
+def add_tension_inputs(tree):
+    """What takes a source of tension."""
+    add_input(
+        tree,
+        "Tension",
+        "Vector",
+        "How the surface is deformed, from one of the LTMD tension nodes. 1, 0, 1 is the rest "
+        "state",
+        (1.0, 0.0, 1.0),
+    )
+    add_input(
+        tree,
+        "Tangent",
+        "Vector",
+        "Direction of the UV map's U on the surface, from the same node as the tension",
+        (0.0, 0.0, 0.0),
+        hide_value=True,
+    )
+
+
 def add_uv_input(tree, description):
     """The UV map of a source of tension."""
     add_input(tree, "UV", "Vector", description, (0.0, 0.0, 0.0), hide_value=True)
@@ -100,6 +120,18 @@ def add_attribute(tree, name, place):
     node.attribute_name = node.label = name
     node.location = place
     return node.outputs["Vector"]
+
+
+def link_script(tree, start, script, parameters=()):
+    """Link the group's inputs to a shader's parameters of the same names without spaces.
+
+    parameters: {input: parameter}, where the name is another.
+    """
+    named = dict(parameters)
+    for socket in start.outputs:
+        if socket.name:
+            name = named.get(socket.name, socket.name.replace(" ", ""))
+            tree.links.new(socket, script.inputs[name])
 
 
 def ends(tree, x=600):

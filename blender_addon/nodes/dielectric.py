@@ -2,8 +2,8 @@
 """LTMD Dielectric: a clear coat that follows the deformation, over any base."""
 
 from .. import osl_script
-from . import add_input, add_output, ends
-from .material_inputs import add_material_inputs, link_script
+from . import add_input, add_output, ends, link_script
+from .material_inputs import add_material_inputs
 
 NAME = "LTMD Dielectric"
 VERSION = 1

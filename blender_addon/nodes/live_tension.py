@@ -2,7 +2,7 @@
 """LTMD Live Tension: the deformation, measured while rendering."""
 
 from .. import osl_script
-from . import add_input, add_tension_outputs, ends
+from . import add_tension_outputs, add_uv_input, ends
 from .rest_positions import add_rest_positions
 
 NAME = "LTMD Live Tension"
@@ -11,13 +11,8 @@ VERSION = 2
 
 def build(tree):
     add_tension_outputs(tree)
-    add_input(
-        tree,
-        "UV",
-        "Vector",
-        "From a UV Map node. Not needed while the material is isotropic (Stretch and Shear 0)",
-        (0.0, 0.0, 0.0),
-        hide_value=True,
+    add_uv_input(
+        tree, "From a UV Map node. Not needed while the material is isotropic (Stretch and Shear 0)"
     )
     start, end = ends(tree)
     script = osl_script.fill(tree.nodes.new("ShaderNodeScript"), "ltmd_tension_live")

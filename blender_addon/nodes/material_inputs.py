@@ -3,7 +3,7 @@
 
 from math import pi
 
-from . import add_input
+from . import add_input, add_tension_inputs
 
 
 def add_material_inputs(tree):
@@ -106,22 +106,7 @@ def add_surface_inputs(tree):
         -10.0,
         10.0,
     )
-    add_input(
-        tree,
-        "Tension",
-        "Vector",
-        "How the surface is deformed, from one of the LTMD tension nodes. 1, 0, 1 is the rest "
-        "state",
-        (1.0, 0.0, 1.0),
-    )
-    add_input(
-        tree,
-        "Tangent",
-        "Vector",
-        "Direction of the UV map's U on the surface, from the same node as the tension",
-        (0.0, 0.0, 0.0),
-        hide_value=True,
-    )
+    add_tension_inputs(tree)
     add_input(
         tree,
         "Normal",
@@ -150,10 +135,3 @@ def add_surface_inputs(tree):
         -1.0,
         2.0,
     )
-
-
-def link_script(tree, start, script):
-    """Link the group's inputs to a shader's parameters of the same names without spaces."""
-    for socket in start.outputs:
-        if socket.name:
-            tree.links.new(socket, script.inputs[socket.name.replace(" ", "")])

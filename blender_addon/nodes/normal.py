@@ -2,16 +2,12 @@
 """LTMD Normal: wrinkles of a normal map flatten where the skin is stretched."""
 
 from .. import osl_script
-from . import add_input, add_output, ends
+from . import add_input, add_output, add_tension_inputs, ends, link_script
 
 NAME = "LTMD Normal"
 VERSION = 1
 
-PARAMETERS = {
-    "Normal": "BentNormal",
-    "Height Response": "HeightResponse",
-    "From Bump": "FromBump",
-}
+PARAMETERS = {"Normal": "BentNormal"}  # a shader may not have an input and an output of one name
 
 
 def build(tree):
@@ -24,22 +20,7 @@ def build(tree):
         (0.0, 0.0, 0.0),
         hide_value=True,
     )
-    add_input(
-        tree,
-        "Tension",
-        "Vector",
-        "How the surface is deformed, from one of the LTMD tension nodes. 1, 0, 1 is the rest "
-        "state",
-        (1.0, 0.0, 1.0),
-    )
-    add_input(
-        tree,
-        "Tangent",
-        "Vector",
-        "Direction of the UV map's U on the surface, from the same node as the tension",
-        (0.0, 0.0, 0.0),
-        hide_value=True,
-    )
+    add_tension_inputs(tree)
     add_input(
         tree,
         "Strength",
@@ -70,7 +51,5 @@ def build(tree):
     )
     start, end = ends(tree, 400)
     script = osl_script.fill(tree.nodes.new("ShaderNodeScript"), "ltmd_normal")
-    for socket in start.outputs:
-        if socket.name:
-            tree.links.new(socket, script.inputs[PARAMETERS.get(socket.name, socket.name)])
+    link_script(tree, start, script, PARAMETERS)
     tree.links.new(script.outputs["Normal"], end.inputs["Normal"])

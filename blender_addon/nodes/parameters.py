@@ -2,8 +2,8 @@
 """LTMD Parameters: the deformed highlight as numbers, for any other node."""
 
 from .. import osl_script
-from . import add_output, ends
-from .material_inputs import add_roughness_inputs, add_surface_inputs, link_script
+from . import add_output, ends, link_script
+from .material_inputs import add_roughness_inputs, add_surface_inputs
 from .node_math import Scalar, Vector, arrange
 
 NAME = "LTMD Parameters"

@@ -4,8 +4,8 @@
 from math import pi
 
 from .. import osl_script
-from . import add_input, add_output, ends
-from .material_inputs import add_roughness_inputs, add_surface_inputs, link_script
+from . import add_input, add_output, ends, link_script
+from .material_inputs import add_roughness_inputs, add_surface_inputs
 
 NAME = "LTMD Reference"
 VERSION = 1

@@ -2,7 +2,7 @@
 """LTMD Tension View: the deformation in false colour."""
 
 from .. import osl_script
-from . import add_input, add_output, ends
+from . import add_input, add_output, add_tension_inputs, ends, link_script
 from .rest_positions import add_rest_positions
 
 NAME = "LTMD Tension View"
@@ -14,21 +14,7 @@ LEGEND = "Grey at rest, red where stretched, blue where squeezed, purple where b
 def add_inputs(tree):
     """What every view takes."""
     add_output(tree, "Emission", "Shader", LEGEND)
-    add_input(
-        tree,
-        "Tension",
-        "Vector",
-        "From LTMD Live Tension or another source of tension",
-        (1.0, 0.0, 1.0),
-    )
-    add_input(
-        tree,
-        "Tangent",
-        "Vector",
-        "Direction of the UV map's U on the surface, from the same node as the tension",
-        (0.0, 0.0, 0.0),
-        hide_value=True,
-    )
+    add_tension_inputs(tree)
     add_input(
         tree,
         "Range",
@@ -81,8 +67,6 @@ def build(tree):
     link(rest, script.inputs["Rest"])
     link(fallback, script.inputs["RestFallback"])
     link(size, script.inputs["RestSize"])
-    for socket in start.outputs:
-        if socket.name:
-            link(socket, script.inputs[socket.name])
+    link_script(tree, start, script)
     link(script.outputs["Color"], emission.inputs["Color"])
     link(emission.outputs["Emission"], end.inputs["Emission"])

@@ -2,7 +2,7 @@
 """LTMD Texture Tension: the deformation, from one baked image; chain one per UDIM tile."""
 
 from .. import osl_script
-from . import add_input, add_tension_outputs, ends
+from . import add_input, add_tension_outputs, add_uv_input, ends, link_script
 
 NAME = "LTMD Texture Tension"
 VERSION = 1
@@ -18,14 +18,7 @@ def add_image_inputs(tree):
         (1.0, 0.0, 1.0, 1.0),
         hide_value=True,
     )
-    add_input(
-        tree,
-        "UV",
-        "Vector",
-        "From a UV Map node with the UV map that was baked",
-        (0.0, 0.0, 0.0),
-        hide_value=True,
-    )
+    add_uv_input(tree, "From a UV Map node with the UV map that was baked")
     add_input(tree, "Tile", "Int", "UDIM number of the image; 1001 without UDIM", 1001, 1001, 2000)
     add_input(
         tree,
@@ -41,8 +34,6 @@ def build(tree):
     add_image_inputs(tree)
     start, end = ends(tree, 400)
     script = osl_script.fill(tree.nodes.new("ShaderNodeScript"), "ltmd_tension_texture")
-    for socket in start.outputs:
-        if socket.name:
-            tree.links.new(socket, script.inputs[socket.name])
+    link_script(tree, start, script)
     tree.links.new(script.outputs["Tension"], end.inputs["Tension"])
     tree.links.new(script.outputs["Tangent"], end.inputs["Tangent"])

@@ -4,7 +4,7 @@
 from math import pi
 
 from .. import osl_script
-from . import add_input, add_output, add_tension_outputs, add_uv_input, ends
+from . import add_input, add_output, add_tension_outputs, add_uv_input, ends, link_script
 
 NAME = "LTMD Warp"
 VERSION = 1
@@ -70,8 +70,6 @@ def build(tree):
     )
     start, end = ends(tree, 400)
     script = osl_script.fill(tree.nodes.new("ShaderNodeScript"), "ltmd_warp")
-    for socket in start.outputs:
-        if socket.name:
-            tree.links.new(socket, script.inputs[PARAMETERS.get(socket.name, socket.name)])
+    link_script(tree, start, script, PARAMETERS)
     for name in ("Tension", "Tangent", "Rotation", "Shear"):
         tree.links.new(script.outputs[name], end.inputs[name])
