@@ -71,7 +71,8 @@ stage_format() {
 # pytest's own exit code 5, nothing collected, is a failure too.
 pytest_of() {
     ltmd_wheel || return 1
-    local options=(-q -rfEs --durations=5 -p no:cacheprovider -m "$LEFT_OUT")
+    # Most of a Blender test is one thread that starts Blender: as many at a time as there are cores.
+    local options=(-q -rfEs --durations=5 -p no:cacheprovider -m "$LEFT_OUT" -n "$(nproc)" --dist worksteal)
     timeout 1200 "$LTMD_TOOLS/bin/python" -m pytest "${options[@]}" "$@"
 }
 

@@ -66,7 +66,8 @@ def test_smiths_joint_forms_share_one_masking(rng):
     v, m = directions(rng, 1000), d.sample(rng.random((1000, 2)))
     for model in SMITH:
         expected = np.where(np.sum(v * m, axis=1) > 0, d.G1(v), 0)
-        np.testing.assert_array_equal(ltmd.G1(d, v, m, model), expected)
+        # The same few operations in another order.
+        np.testing.assert_allclose(ltmd.G1(d, v, m, model), expected, rtol=8 * np.finfo(float).eps)
 
 
 def test_v_cavity_masking():
