@@ -46,7 +46,7 @@ def _set(material, socket, value):
 
 
 class LTMD_OT_preset(setup.OnObjects, bpy.types.Operator):
-    """Make the active material look like a known one"""
+    """Make the active material of each selected object look like a known one"""
 
     bl_idname = "ltmd.preset"
     bl_label = "Apply Preset"

@@ -5,6 +5,8 @@ identifiers by which Blender would match them are those of another group.
 
 import re
 
+import bpy
+
 from . import ensure
 
 
@@ -74,7 +76,8 @@ def _move_animation(tree, name, old, new):
     data = tree.animation_data
     if data is None:
         return
-    path = re.compile(rf'(nodes\["{re.escape(name)}"\]\.inputs\[)(\d+)(\].*)')
+    quoted = re.escape(bpy.utils.escape_identifier(name))
+    path = re.compile(rf'(nodes\["{quoted}"\]\.inputs\[)(\d+)(\].*)')
     for curve in list(curves(data)):
         match = path.fullmatch(curve.data_path)
         if match and int(match[2]) < len(old) and old[int(match[2])] in new:

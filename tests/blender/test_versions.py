@@ -246,3 +246,23 @@ def test_link_append_and_override_render_the_same(tmp_path):
     for way in ("link", "override"):
         older, answer = used[f"{way} left"]
         assert "LTMD Glossy" in older and answer == ["CANCELLED"]
+
+
+def test_animation_follows_a_node_of_any_name():
+    found = run(
+        """
+from trees import *
+from blender_addon import nodes
+from blender_addon.nodes import conductor, glossy
+from blender_addon.nodes.replace import replace
+
+tree = new_material("M", None).node_tree
+node = nodes.group_node(tree, glossy)
+node.name = 'Größe "1" \\\\'
+node.inputs["Tail"].driver_add("default_value")
+replace(node, conductor, {"Color": "Base Color"})
+report(driven=tree.animation_data.drivers[0].data_path,
+       wanted=node.inputs["Tail"].path_from_id("default_value"))
+"""
+    )
+    assert found["driven"] == found["wanted"]
