@@ -20,7 +20,9 @@ if [ "${1:-}" = microfacet ]; then
     build/release/tests/cpp/ltmd_bench
 fi
 if [ "${1:-}" = materials ]; then
-    exec "$LTMD_BPY/bin/python" tests/bench/cycles_materials.py "${@:2}"
+    blender=${LTMD_BLENDER:-4.5}
+    ltmd_venv_blender "$blender"
+    exec "$LTMD_CACHE/venv-bpy$blender/bin/python" tests/bench/cycles_materials.py "${@:2}"
 fi
 if [ -e "tests/bench/${1:-}.py" ]; then
     exec "$LTMD_TOOLS/bin/python" "tests/bench/$1.py" "${@:2}"
