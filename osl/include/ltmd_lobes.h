@@ -12,18 +12,18 @@
 #include "ltmd_lobe_table.h"
 #include "ltmd_surface.h"
 
-// All tables in a row, gamma <= 2 with 1 to 5 lobes, then beyond with 1 to 6. It is the default
-// value of a shader's parameter: a local array would be filled at every call.
+// All tables in a row, gamma <= 2 with 1 to 6 lobes, then beyond. It is the default value of a
+// shader's parameter: a local array would be filled at every call.
 #define LTMD_LOBE_TABLE                                                                           \
     LTMD_LOBE_TABLE_TO_2_1, LTMD_LOBE_TABLE_TO_2_2, LTMD_LOBE_TABLE_TO_2_3,                       \
-    LTMD_LOBE_TABLE_TO_2_4, LTMD_LOBE_TABLE_TO_2_5, LTMD_LOBE_TABLE_TO_4_1,                       \
-    LTMD_LOBE_TABLE_TO_4_2, LTMD_LOBE_TABLE_TO_4_3, LTMD_LOBE_TABLE_TO_4_4,                       \
-    LTMD_LOBE_TABLE_TO_4_5, LTMD_LOBE_TABLE_TO_4_6
+    LTMD_LOBE_TABLE_TO_2_4, LTMD_LOBE_TABLE_TO_2_5, LTMD_LOBE_TABLE_TO_2_6,                       \
+    LTMD_LOBE_TABLE_TO_4_1, LTMD_LOBE_TABLE_TO_4_2, LTMD_LOBE_TABLE_TO_4_3,                       \
+    LTMD_LOBE_TABLE_TO_4_4, LTMD_LOBE_TABLE_TO_4_5, LTMD_LOBE_TABLE_TO_4_6
 // Place and weight at each alpha and gamma, of one lobe.
 #define LTMD_LOBE_TABLE_LOBE                                                                      \
     (2 * (LTMD_LOBE_TABLE_ALPHA_STEPS + 1) * (LTMD_LOBE_TABLE_GAMMA_STEPS + 1))
-// 36 of them. OSL wants a plain number.
-#define LTMD_LOBE_TABLE_SIZE 11016
+// 42 of them. OSL wants a plain number.
+#define LTMD_LOBE_TABLE_SIZE 12852
 
 // A closure whose weight is below this vanishes in Cycles.
 #define LTMD_LEAST_WEIGHT 1e-5
@@ -52,7 +52,7 @@ int ltmd_lobe_count(int lobes, float alpha, float gamma, int most)
     int count = lobes;
     if (lobes <= 0)
         count = gamma <= 2 && alpha >= 0.1 ? 3 : most;
-    return clamp(count, 1, gamma <= 2 ? 5 : 6);
+    return clamp(count, 1, 6);
 }
 
 // Weights of Lagrange's cubic through four neighbours at 0, 1, 2, 3.
@@ -92,7 +92,7 @@ void ltmd_fit_lobes(float table[], float alpha, float unbounded_gamma, int count
     ltmd_cubic(y - first_y, g0, g1, g2, g3);
     int column = 2 * n;
     int row = (LTMD_LOBE_TABLE_GAMMA_STEPS + 1) * column;
-    int start = LTMD_LOBE_TABLE_LOBE * ((beyond ? 15 : 0) + n * (n - 1) / 2) + first_x * row +
+    int start = LTMD_LOBE_TABLE_LOBE * ((beyond ? 21 : 0) + n * (n - 1) / 2) + first_x * row +
                 first_y * column;
     // How the weights vanish at the borders.
     float first_factor = !beyond && n > 1 ? 2 - gamma : 1.0;

@@ -62,8 +62,6 @@ report(out=out)
         for j, gamma in enumerate(gammas):
             for i, alpha in enumerate(alphas):
                 most = count or (3 if gamma <= 2 and alpha >= 0.1 else 5)
-                # The shaders take at most 5 where all are GGX.
-                most = min(most, 5) if gamma <= 2 else most
                 want = ltmd.fit_lobes(max(alpha, 1e-4), gamma, most)
                 cell = got[j, i]
                 used = cell[6:12] > 0
