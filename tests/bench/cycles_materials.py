@@ -160,8 +160,8 @@ def first_pixel(bench, build, osl):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--size", type=int, default=64, help="pixels of the picture's side")
-    parser.add_argument("--repeats", type=int, default=20)
+    parser.add_argument("--size", type=int, default=192, help="pixels of the picture's side")
+    parser.add_argument("--repeats", type=int, default=5)
     parser.add_argument("--only", nargs="+", help="parts of the names of the variants to run")
     args = parser.parse_args()
     # Cycles talks on stdout.
