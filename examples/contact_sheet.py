@@ -85,7 +85,10 @@ def grid(sheet):
     for index, ((caption, _), cell) in enumerate(zip(sheet["cells"], pictures, strict=True)):
         left, top = width * (index % columns), 56 + height * (index // columns)
         picture.paste(cell, (left, top), cell)
-        draw.text((left + width / 2, top + height - 16), caption, INK, font(13), anchor="mm")
+        size = 13
+        while font(size).getlength(caption) > width - 8:
+            size -= 1
+        draw.text((left + width / 2, top + height - 16), caption, INK, font(size), anchor="mm")
     return picture
 
 
